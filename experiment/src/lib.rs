@@ -1,0 +1,1 @@
+//! Simulated and real observers: a timed two-interval session and its log.

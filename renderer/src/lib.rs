@@ -1,0 +1,6 @@
+//! Radiance scenes rendered by light-transport component, in the order that a component regular expression says.
+
+pub mod color;
+pub mod component;
+pub mod raster;
+pub mod work;

@@ -1,0 +1,1 @@
+//! The study file, the manifest of its pictures, and their hashes.

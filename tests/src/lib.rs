@@ -1,0 +1,1 @@
+//! Nothing to link against: this member exists for its test binary.
