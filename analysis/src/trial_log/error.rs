@@ -1,0 +1,54 @@
+//! What can be wrong with a log, and where.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// A place in a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The log.
+    pub file: PathBuf,
+    /// Line in the file, from 1.
+    pub line: u64,
+    /// Number and name of the column, from 1.
+    pub column: Option<(usize, String)>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, line {}", self.file.display(), self.line)?;
+        match &self.column {
+            Some((number, name)) => write!(f, ", column {number} ({name})"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Why a log cannot be used. The message says what was expected and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The file could not be read.
+    #[error("{}: {source}", file.display())]
+    Io {
+        /// The log.
+        file: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The log's content is wrong.
+    #[error("{place}: {message}")]
+    Content {
+        /// Where.
+        place: Place,
+        /// What is wrong, what was expected, what to do.
+        message: String,
+    },
+}
+
+impl Error {
+    /// Whether the input is wrong (as against unreadable).
+    #[must_use]
+    pub fn is_content(&self) -> bool {
+        matches!(self, Self::Content { .. })
+    }
+}
