@@ -79,7 +79,7 @@ pub const COLUMNS: [Column; 42] = [
     must("stimuli_hash", HASH, "", "SHA-256 of the stimuli manifest"),
     must("version", TEXT, "", "version of the program that wrote the row"),
     must("started_utc", "YYYY-MM-DDTHH:MM:SSZ", "", "start of the session, universal time"),
-    may("demo", BOOL, "", "true where the study is a demonstration; a log without the column is none"),
+    must("demo", BOOL, "", "true where the study is a demonstration; a log without the column is none"),
 ];
 
 /// How many of [`COLUMNS`] a log must have.

@@ -208,7 +208,7 @@ fn set(trial: &mut Trial, index: usize, text: &str) -> Result<(), String> {
         38 => hash(text, &mut trial.stimuli_hash)?,
         39 => name(text, &mut trial.version)?,
         40 => moment(text, &mut trial.started_utc)?,
-        41 => trial.demo = optional(text)?.unwrap_or(false),
+        41 => trial.demo = required(text)?,
         _ => {}
     }
     Ok(())
