@@ -1,6 +1,9 @@
-//! What crosses crates, as one test binary.
+//! What crosses crates, as one test binary: `cargo test -p tests -- house` runs a part of it.
+
+mod house;
 
 fn main() {
     let arguments = libtest_mimic::Arguments::from_args();
-    libtest_mimic::run(&arguments, Vec::new()).exit();
+    let trials = [house::trials()].into_iter().flatten().collect();
+    libtest_mimic::run(&arguments, trials).exit();
 }
