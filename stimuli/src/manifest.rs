@@ -181,3 +181,103 @@ fn request_changes(was: &Request, is: &Request) -> Vec<String> {
     ];
     fields.into_iter().filter(|(_, same)| !same).map(|(name, _)| name.to_owned()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STUDY: &str = include_str!("../corridor/study.toml");
+
+    /// A folder with a study, its inputs, one picture and the manifest that knows it.
+    fn made() -> (tempfile::TempDir, Study, Manifest) {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("pictures")).unwrap();
+        std::fs::write(folder.path().join("study.toml"), STUDY).unwrap();
+        std::fs::write(folder.path().join("layout_a.rad"), "void light l 0 0 3 1 1 1").unwrap();
+        std::fs::write(folder.path().join("pictures/a_hq.png"), "a picture").unwrap();
+        let study = Study::load(folder.path()).unwrap();
+        let stimulus = study.stimuli().remove(0);
+        let record = PictureRecord {
+            layout: stimulus.layout.clone(),
+            quality: stimulus.quality.clone(),
+            file: stimulus.file(),
+            sha256: Sha256::of(b"a picture"),
+            request: study.request(&stimulus).unwrap(),
+            inputs: BTreeMap::from([("layout_a.rad".into(), Sha256::of(b"void light l 0 0 3 1 1 1"))]),
+            rays: BTreeMap::from([("primary".to_owned(), 1)]),
+            mean_luminance_cd_m2: 1.5,
+            version: "v".to_owned(),
+        };
+        let timing = Timing { seconds: 2.0, threads: 1 };
+        let manifest = Manifest {
+            study: study.id.clone(),
+            pictures: BTreeMap::from([(stimulus.id(), record)]),
+            timings: BTreeMap::from([(stimulus.id(), timing)]),
+        };
+        (folder, study, manifest)
+    }
+
+    fn first_status(manifest: &Manifest, study: &Study) -> PictureStatus {
+        manifest.check(study, "v").unwrap().remove(0).1
+    }
+
+    #[test]
+    fn a_picture_is_fresh_until_something_changes() {
+        let (folder, study, manifest) = made();
+        assert_eq!(first_status(&manifest, &study), PictureStatus::Fresh);
+
+        std::fs::write(folder.path().join("pictures/a_hq.png"), "painted over").unwrap();
+        assert_eq!(first_status(&manifest, &study), PictureStatus::Altered);
+
+        std::fs::remove_file(folder.path().join("pictures/a_hq.png")).unwrap();
+        assert_eq!(first_status(&manifest, &study), PictureStatus::Missing);
+        assert_eq!(first_status(&Manifest::default(), &study), PictureStatus::Missing);
+    }
+
+    #[test]
+    fn every_change_of_what_a_picture_was_made_from_is_named() {
+        let (folder, mut study, manifest) = made();
+        std::fs::write(folder.path().join("layout_a.rad"), "void light l 0 0 3 9 9 9").unwrap();
+        study.layouts[0].exposure *= 2.0;
+        study.qualities[0].crex = "D".to_owned();
+        let changed = ["crex", "exposure", "layout_a.rad"].map(str::to_owned).to_vec();
+        assert_eq!(first_status(&manifest, &study), PictureStatus::Stale(changed));
+        assert_eq!(
+            made().2.check(&study, "w").unwrap()[0].1,
+            PictureStatus::Stale(
+                ["crex", "exposure", "version (v, now w)", "layout_a.rad"].map(str::to_owned).to_vec()
+            )
+        );
+        std::fs::remove_file(folder.path().join("layout_a.rad")).unwrap();
+        assert!(matches!(first_status(&manifest, &study), PictureStatus::Stale(changed) if changed.len() == 3));
+    }
+
+    #[test]
+    fn a_change_of_words_makes_no_picture_stale() {
+        let (_folder, mut study, manifest) = made();
+        study.wording.worse = "Which?".to_owned();
+        study.arms[0].n = 20;
+        assert_eq!(first_status(&manifest, &study), PictureStatus::Fresh);
+    }
+
+    #[test]
+    fn a_manifest_comes_back_as_it_was_saved_and_its_hash_ignores_timings() {
+        let (folder, _, mut manifest) = made();
+        manifest.save(folder.path()).unwrap();
+        assert_eq!(Manifest::load(folder.path()).unwrap(), manifest);
+        let hash = manifest.hash().unwrap();
+        manifest.timings.clear();
+        assert_eq!(manifest.hash().unwrap(), hash);
+        manifest.pictures.clear();
+        assert_ne!(manifest.hash().unwrap(), hash);
+    }
+
+    #[test]
+    fn what_is_no_manifest_is_reported_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(FILE_NAME), "{\n\"study\": 3}").unwrap();
+        let error = Manifest::load(folder.path()).unwrap_err();
+        assert!(error.is_input());
+        assert!(error.to_string().contains("manifest.json:2:"), "{error}");
+    }
+}

@@ -247,7 +247,8 @@ fn check_plan(study: &Study, found: &mut Problems) {
         found.add(&[Key("analysis"), Key("bound_proportion")], "the bound lies between 0 and 0.5", help);
     }
     let proportion = AnalysisPlan::proportion_of_jod(plan.bound_jod);
-    if !((proportion - plan.bound_proportion).abs() <= 6e-4) {
+    let apart = (proportion - plan.bound_proportion).abs();
+    if apart.is_nan() || apart > 6e-4 {
         let message = format!("{} JOD is {proportion:.4}, not {}", plan.bound_jod, plan.bound_proportion);
         let help = "The two state the same bound; change one.";
         found.add(&[Key("analysis"), Key("bound_jod")], message, help);
@@ -256,5 +257,77 @@ fn check_plan(study: &Study, found: &mut Problems) {
         [("max_onset_error_ms", limits.max_onset_error_ms), ("max_duration_error_ms", limits.max_duration_error_ms)]
     {
         found.number(&[Key("exclusions"), Key(key)], limit, 0.0, true);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::{Path, PathBuf};
+
+    use super::super::Study;
+
+    /// The shipped study, which is also the example of a right study.
+    fn shipped() -> String {
+        std::fs::read_to_string(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("corridor/study.toml")).unwrap()
+    }
+
+    /// What is said about the shipped study after one replacement, which must be possible.
+    fn said(from: &str, to: &str) -> String {
+        let text = shipped();
+        assert!(text.contains(from), "{from}");
+        Study::parse(&text.replacen(from, to, 1), Path::new("study.toml")).unwrap_err().to_string()
+    }
+
+    /// The line of the shipped study on which `text` first occurs.
+    fn line_of(text: &str) -> usize {
+        let study = shipped();
+        study[..study.find(text).unwrap()].matches('\n').count() + 1
+    }
+
+    #[test]
+    fn the_shipped_study_is_right() {
+        let study = Study::parse(&shipped(), Path::new("study.toml")).unwrap();
+        assert!((study.display.pixels_per_degree() - 39.75).abs() < 0.005, "17 inches, 1280 x 1024, 60 cm");
+        let pictures: Vec<_> = study.stimuli().iter().map(super::Stimulus::id).collect();
+        assert_eq!(pictures[..4], ["a_hq", "a_cbq", "b_hq", "b_cbq"], "each once, critical ones first");
+    }
+
+    #[test]
+    fn a_mistake_is_reported_where_it_is_written() {
+        for (from, to, message) in [
+            ("interval_s = 6.0", "interval_s = -6.0", "more than 0, found -6"),
+            ("crex = \"(TRSGMD)*\"\nspp = ", "crex = \"(TRSGMD)*\"\nspp = 0 #", "at least 1, found 0"),
+            ("qualities = [\"HQ\", \"CBQ\"]", "qualities = [\"HQ\", \"SUPER\"]", "there is no quality `SUPER`"),
+            ("[check]\nlayout = \"a\"", "[check]\nlayout = \"z\"", "there is no layout `z`"),
+            ("view = \"corridor.vf\"", "view = \"../corridor.vf\"", "leaves the study's folder"),
+            ("view = \"corridor.vf\"", "view = \"/etc/passwd\"", "leaves the study's folder"),
+            ("bound_jod = 0.5", "bound_jod = 1.0", "1 JOD is 0.2500, not 0.132"),
+            ("exposure = ", "exposure = nan #", "more than 0, found NaN"),
+            ("demo = true", "demo = treu", "invalid"),
+            ("seed = 2005", "sede = 2005", "unknown field `sede`"),
+        ] {
+            let said = said(from, to);
+            assert!(said.contains(message), "{to}: {said}");
+            let offset = from.matches('\n').count();
+            assert!(said.contains(&format!("study.toml:{}:", line_of(from) + offset)), "{to}: {said}");
+        }
+    }
+
+    #[test]
+    fn every_mistake_is_reported_at_once() {
+        let text = shipped().replacen("seed = 2005", "seed = 2005 ", 1);
+        let text = text.replace("interval_s = 6.0", "interval_s = 0").replace("gap_s = 1.0", "gap_s = -1");
+        let said = Study::parse(&text, Path::new("s")).unwrap_err().to_string();
+        assert_eq!(said.lines().filter(|line| line.starts_with("s:")).count(), 2, "{said}");
+    }
+
+    #[test]
+    fn names_that_differ_by_case_alone_would_share_a_picture() {
+        assert!(said("name = \"CBQ\"", "name = \"hq\"").contains("here twice"));
+    }
+
+    #[test]
+    fn a_modulated_quality_needs_a_map() {
+        assert!(said("importance = \"maps/a.png\"\n", "").contains("no importance map"));
     }
 }
