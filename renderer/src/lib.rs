@@ -2,5 +2,7 @@
 
 pub mod color;
 pub mod component;
+pub mod crex;
 pub mod raster;
+pub mod schedule;
 pub mod work;

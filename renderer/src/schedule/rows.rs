@@ -1,0 +1,46 @@
+//! The record of an execution: a row for every stage, and the rows of image tiles made into those of the picture.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::work::{Stage, StageKey, WorkReport};
+
+/// A stage and what it did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageRow {
+    /// Which stage.
+    pub stage: Stage,
+    /// What it did.
+    pub report: WorkReport,
+}
+
+/// The rows of one execution over the whole picture, from those of the tiles that each ran the same program by itself:
+/// rays, spawned rays and seconds of equal keys are summed, rows come in the order in which one execution runs them, and
+/// runs of a letter are counted anew, since a tile may have run a repeat less often than another.
+///
+/// Tiles may come in any order; the sum of their seconds is rounded in the order given.
+#[must_use]
+pub fn merge_rows(tiles: impl IntoIterator<Item = Vec<StageRow>>) -> Vec<StageRow> {
+    let mut merged: BTreeMap<StageKey, StageRow> = BTreeMap::new();
+    for row in tiles.into_iter().flatten() {
+        match merged.get_mut(&row.stage.key) {
+            None => {
+                merged.insert(row.stage.key.clone(), row);
+            }
+            Some(sum) => {
+                sum.report.rays += row.report.rays;
+                sum.report.seconds += row.report.seconds;
+                for (component, count) in sum.report.spawned.iter_mut() {
+                    *count += row.report.spawned[component];
+                }
+            }
+        }
+    }
+    let mut runs: HashMap<(usize, usize), u64> = HashMap::new();
+    let mut rows: Vec<_> = merged.into_values().collect();
+    for row in &mut rows {
+        let run = runs.entry(row.stage.span).or_default();
+        *run += 1;
+        row.stage.run = *run;
+    }
+    rows
+}

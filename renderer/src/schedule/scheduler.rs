@@ -1,0 +1,64 @@
+//! A crex's walk without a time limit: everything runs.
+
+use crate::crex::{Cursor, Program, Span, ThresholdError};
+use crate::work::{BinOccupancy, Stage, Work, WorkReport};
+
+use super::rows::StageRow;
+
+/// Decides what the tracer does next over one set of bins, and keeps a row of every stage that ran.
+///
+/// Primary rays come before its first decision and are no stage of it. Call [`next`](Self::next), do the work, give
+/// [`report`](Self::report) what a run did, again.
+#[derive(Clone, Debug)]
+pub struct Scheduler<'p> {
+    cursor: Cursor<'p>,
+    /// The stage handed out and not yet reported.
+    running: Option<Stage>,
+    rows: Vec<StageRow>,
+}
+
+impl<'p> Scheduler<'p> {
+    /// A walk along `program`, with `thresholds` in place of its own if given: one importance in [0, 1] for each member
+    /// of each `{ }`, from left to right.
+    ///
+    /// # Errors
+    /// As [`Program::check_thresholds`].
+    pub fn new(program: &'p Program, thresholds: Option<&[f32]>) -> Result<Self, ThresholdError> {
+        let mut cursor = Cursor::new(program);
+        if let Some(thresholds) = thresholds {
+            cursor = cursor.with_thresholds(thresholds)?;
+        }
+        Ok(Self { cursor, running: None, rows: Vec::new() })
+    }
+
+    /// What to do next; none when the crex has ended. Components whose bins are empty run too: tracing nothing is a
+    /// stage. Without a time limit the `occupancy` decides nothing.
+    #[allow(clippy::should_implement_trait, reason = "an iterator would hide that reports must come in between")]
+    pub fn next(&mut self, _occupancy: &BinOccupancy) -> Option<Work> {
+        let work = self.cursor.next()?;
+        if let Work::Run(stage) = &work {
+            self.running = Some(stage.clone());
+        }
+        Some(work)
+    }
+
+    /// What the last [`Work::Run`] did.
+    pub fn report(&mut self, report: &WorkReport) {
+        self.cursor.report(report.rays);
+        if let Some(stage) = self.running.take() {
+            self.rows.push(StageRow { stage, report: *report });
+        }
+    }
+
+    /// Where the `*`s stand that were stopped after a million runs; each deserves a warning.
+    #[must_use]
+    pub fn stopped(&self) -> &[Span] {
+        self.cursor.stopped()
+    }
+
+    /// The rows of all stages reported so far, in the order in which they ran.
+    #[must_use]
+    pub fn into_rows(self) -> Vec<StageRow> {
+        self.rows
+    }
+}
