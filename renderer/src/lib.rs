@@ -3,6 +3,8 @@
 pub mod color;
 pub mod component;
 pub mod crex;
+pub mod geometry;
+pub mod math;
 pub mod raster;
 pub mod schedule;
 pub mod work;

@@ -1,0 +1,351 @@
+//! All shapes of a scene in a bounding volume hierarchy. The only file that names obvhs.
+//!
+//! The hierarchy is traversed in `f32`, in a frame where the scene fills [-1,1]^3; its boxes are rounded outward and
+//! padded by more than that arithmetic can err, and the leaves are met in `f64`. So no hit is lost, whatever the unit or
+//! the place of the scene, and the answer is the one of testing every shape.
+
+use std::time::Duration;
+
+use glam::{DVec3, Vec3A};
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use obvhs::{BvhBuildParams, aabb::Aabb, ray::RayHit};
+
+use super::shape::{Probe, Shape};
+use super::{Hit, Ray, SurfaceId};
+use crate::math::tolerance;
+
+/// Growth of every box, in a frame where the scene's half extent is 1. The slab test in `f32` errs by at most 5e-7 there:
+/// three roundings (6e-8 each) of distances up to 2, and as much for the rounded origin and direction.
+const PADDING: f64 = 4e-6;
+
+/// What a surface does to a shadow ray that meets it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passage {
+    /// Stops it.
+    Opaque,
+    /// Lets it go straight on, weakened perhaps: glass, smooth trans, an illum without alternate.
+    Straight,
+    /// Bends it: dielectric.
+    Refracting,
+}
+
+/// A shape as the aggregate needs it.
+#[derive(Clone, Debug)]
+pub struct Item {
+    /// The geometry.
+    pub shape: Shape,
+    /// Its number in the scene.
+    pub surface: SurfaceId,
+    /// What it does to shadow rays.
+    pub passage: Passage,
+    /// Among coincident surfaces alike in opacity and side the one of higher precedence is met.
+    pub precedence: u32,
+}
+
+/// What lies on the way of a shadow ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shadow {
+    /// Nothing but the straight crossings that were listed.
+    Clear,
+    /// An opaque surface, with nothing before it that bends rays.
+    Blocked,
+    /// Something that bends rays: the caller has to follow the ray by [`Aggregate::closest`].
+    Refracted,
+}
+
+/// The shapes of a scene, ready for rays. Shared freely between threads.
+pub struct Aggregate {
+    bvh: Bvh2,
+    items: Vec<Item>,
+    centre: DVec3,
+    /// Half the largest extent.
+    half_extent: f64,
+    /// Half the diagonal.
+    radius: f64,
+    has_straight: bool,
+    has_refracting: bool,
+}
+
+/// A ray within the bounds of the scene, in the hierarchy's frame.
+struct Entry {
+    ray: obvhs::ray::Ray,
+    /// Distance from the real origin to the ray's.
+    skipped: f64,
+}
+
+impl Aggregate {
+    /// Builds the hierarchy. Deterministic: the same items give the same tree.
+    #[must_use]
+    pub fn new(items: impl IntoIterator<Item = Item>) -> Self {
+        let mut items: Vec<Item> = items.into_iter().collect();
+        let [low, high] = items
+            .iter()
+            .map(|item| item.shape.bounds())
+            .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], bounds| {
+                [low.min(bounds[0]), high.max(bounds[1])]
+            });
+        let (centre, half) =
+            if items.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (low + (high - low) * 0.5, (high - low) * 0.5) };
+        let half_extent = half.max_element();
+        let bvh = if items.is_empty() {
+            Bvh2::default()
+        } else {
+            let boxes: Vec<Aabb> = items
+                .iter()
+                .map(|item| {
+                    let [low, high] = item.shape.bounds();
+                    Aabb::new(
+                        round_down((low - centre) / half_extent - PADDING),
+                        round_up((high - centre) / half_extent + PADDING),
+                    )
+                })
+                .collect();
+            obvhs::bvh2::builder::build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default())
+        };
+        let mut slots: Vec<Option<Item>> = items.drain(..).map(Some).collect();
+        items.extend(bvh.primitive_indices.iter().filter_map(|&index| slots[index as usize].take()));
+        let has = |passage| items.iter().any(|item| item.passage == passage);
+        Self {
+            centre,
+            half_extent,
+            radius: half.length(),
+            has_straight: has(Passage::Straight),
+            has_refracting: has(Passage::Refracting),
+            items,
+            bvh,
+        }
+    }
+
+    /// Number of shapes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Whether there is no shape at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// Centre of the bounds.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        self.centre
+    }
+
+    /// Half the diagonal of the bounds, in the scene's unit.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The nearest surface that the ray meets. Of coincident surfaces the opaque one is met rather than a
+    /// transparent one, then the one seen from the front, then the one of higher precedence.
+    #[must_use]
+    pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+        let entry = self.enter(ray)?;
+        let probe = Probe::new(ray.origin, ray.dir);
+        let window = tolerance::least_distance(ray.origin, self.radius);
+        let mut best: Option<(f64, usize)> = None;
+        let mut crowded = false;
+        self.walk(&entry, |slot| {
+            let item = &self.items[slot];
+            let t_max = best.map_or(ray.t_max, |(t, _)| t + window);
+            let t = item.shape.meet(&probe, ray.leaving == Some(item.surface), window, t_max)?;
+            if let Some((nearest, _)) = best {
+                crowded |= (t - nearest).abs() <= window;
+                if t >= nearest {
+                    return None;
+                }
+            }
+            best = Some((t, slot));
+            Some(t)
+        });
+        let (nearest, mut slot) = best?;
+        if crowded {
+            slot = self.preferred(ray, &probe, nearest, window).unwrap_or(slot);
+        }
+        Some(self.hit(ray, nearest, slot))
+    }
+
+    /// Whether any surface that `counts` says so of meets the ray.
+    #[must_use]
+    pub fn occluded(&self, ray: &Ray, mut counts: impl FnMut(SurfaceId) -> bool) -> bool {
+        let Some(entry) = self.enter(ray) else { return false };
+        let probe = Probe::new(ray.origin, ray.dir);
+        let t_min = tolerance::least_distance(ray.origin, self.radius);
+        let mut found = false;
+        self.walk_until(&entry, |slot, _| {
+            let item = &self.items[slot];
+            found = counts(item.surface)
+                && item.shape.meet(&probe, ray.leaving == Some(item.surface), t_min, ray.t_max).is_some();
+            !found
+        });
+        found
+    }
+
+    /// What a shadow ray meets before `ray.t_max`; the surface that it aims at, `target`, is no obstacle.
+    ///
+    /// `crossings` is cleared and, if the answer is [`Shadow::Clear`], filled with the surfaces that it goes straight
+    /// through, nearest first, coincident ones only once. Reuse it between calls: then nothing is allocated.
+    pub fn shadow(&self, ray: &Ray, target: Option<SurfaceId>, crossings: &mut Vec<Hit>) -> Shadow {
+        crossings.clear();
+        let Some(entry) = self.enter(ray) else { return Shadow::Clear };
+        let probe = Probe::new(ray.origin, ray.dir);
+        let window = tolerance::least_distance(ray.origin, self.radius);
+        let mut blocked_at = f64::INFINITY;
+        let mut bent_at = f64::INFINITY;
+        self.walk_until(&entry, |slot, t_max| {
+            let item = &self.items[slot];
+            if Some(item.surface) == target {
+                return true;
+            }
+            let leaving = ray.leaving == Some(item.surface);
+            match item.passage {
+                Passage::Opaque => {
+                    if let Some(t) = item.shape.meet(&probe, leaving, window, ray.t_max.min(blocked_at)) {
+                        blocked_at = t;
+                        // Only what bends the ray before this point can still change the answer.
+                        if !self.has_refracting {
+                            return false;
+                        }
+                        *t_max = entry.limit(t, self.half_extent);
+                    }
+                }
+                Passage::Refracting => {
+                    let nearest = item.shape.meet(&probe, leaving, window, ray.t_max.min(blocked_at).min(bent_at));
+                    bent_at = nearest.unwrap_or(bent_at);
+                }
+                Passage::Straight => self.cross(ray, &probe, slot, leaving, window, crossings),
+            }
+            true
+        });
+        // Coincident surfaces: the opaque one is met, the bending one is not.
+        if bent_at < blocked_at - window {
+            crossings.clear();
+            return Shadow::Refracted;
+        }
+        if blocked_at < f64::INFINITY {
+            crossings.clear();
+            return Shadow::Blocked;
+        }
+        crossings.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(b.surface.cmp(&a.surface)));
+        crossings.dedup_by(|later, earlier| later.t - earlier.t <= window);
+        Shadow::Clear
+    }
+
+    /// Whether no surface lets shadow rays through, so that [`Self::shadow`] never lists a crossing.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        !self.has_straight && !self.has_refracting
+    }
+
+    /// Lists every crossing of one straight surface: a sphere has two.
+    fn cross(&self, ray: &Ray, probe: &Probe, slot: usize, leaving: bool, window: f64, crossings: &mut Vec<Hit>) {
+        let shape = &self.items[slot].shape;
+        let mut from = window;
+        while let Some(t) = shape.meet(probe, leaving, from, ray.t_max) {
+            crossings.push(self.hit(ray, t, slot));
+            if leaving || shape.is_flat() {
+                return;
+            }
+            from = t;
+        }
+    }
+
+    /// The one of the coincident surfaces around `nearest` that is met.
+    fn preferred(&self, ray: &Ray, probe: &Probe, nearest: f64, window: f64) -> Option<usize> {
+        let entry = self.enter(&ray.up_to((nearest + window).next_up()))?;
+        let mut best: Option<((bool, bool, u32, SurfaceId), usize)> = None;
+        self.walk(&entry, |slot| {
+            let item = &self.items[slot];
+            let t_max = (nearest + window).next_up().min(ray.t_max);
+            let t = item.shape.meet(probe, ray.leaving == Some(item.surface), window, t_max)?;
+            let front = self.hit(ray, t, slot).is_front(ray.dir);
+            let rank = (item.passage == Passage::Opaque, front, item.precedence, item.surface);
+            if best.is_none_or(|(other, _)| rank > other) {
+                best = Some((rank, slot));
+            }
+            None
+        });
+        best.map(|(_, slot)| slot)
+    }
+
+    fn hit(&self, ray: &Ray, t: f64, slot: usize) -> Hit {
+        let item = &self.items[slot];
+        let (point, normal) = item.shape.settle(ray.at(t));
+        Hit { t, point, normal, surface: item.surface }
+    }
+
+    /// Moves the ray to the point where it enters the padded bounds, and into the hierarchy's frame.
+    fn enter(&self, ray: &Ray) -> Option<Entry> {
+        if self.items.is_empty() {
+            return None;
+        }
+        // Where the origin is outside, its `f32` image could be off by more than the padding.
+        let reach = self.half_extent * (1.0 + 2.0 * PADDING);
+        let from_centre = ray.origin - self.centre;
+        let (mut skipped, mut last) = (0.0_f64, ray.t_max);
+        if from_centre.abs().max_element() > reach {
+            let inverse = ray.dir.recip();
+            let (to_low, to_high) = ((-from_centre - reach) * inverse, (-from_centre + reach) * inverse);
+            for (low, high) in to_low.to_array().into_iter().zip(to_high.to_array()) {
+                // NaN, from 0 times infinity, is a ray along a face: it does not limit.
+                skipped = skipped.max(low.min(high));
+                last = last.min(low.max(high));
+            }
+            // Far away the rounding of both is comparable to the scene: a miss must be a clear one.
+            let rounding = 8.0 * f64::EPSILON * from_centre.length();
+            if skipped > last + rounding {
+                return None;
+            }
+            skipped = (skipped - rounding).max(0.0);
+        }
+        let origin = (from_centre + ray.dir * skipped) / self.half_extent;
+        let mut entry = Entry { ray: obvhs::ray::Ray::new_inf(origin.as_vec3a(), ray.dir.as_vec3a()), skipped };
+        entry.ray.tmax = entry.limit(ray.t_max, self.half_extent);
+        Some(entry)
+    }
+
+    /// Offers leaves to `meet`, nearest first, which answers with a distance beyond which nothing matters any more.
+    fn walk(&self, entry: &Entry, mut meet: impl FnMut(usize) -> Option<f64>) {
+        self.walk_until(entry, |slot, t_max| {
+            if let Some(t) = meet(slot) {
+                *t_max = entry.limit(t, self.half_extent);
+            }
+            true
+        });
+    }
+
+    /// Offers leaves to `visit`, which may lower the distance beyond which nothing matters, until it says no.
+    fn walk_until(&self, entry: &Entry, mut visit: impl FnMut(usize, &mut f32) -> bool) {
+        let leaf = |node: &Bvh2Node, ray: &mut obvhs::ray::Ray, _: &mut RayHit| {
+            let first = node.first_index as usize;
+            (first..first + node.prim_count as usize).all(|slot| visit(slot, &mut ray.tmax))
+        };
+        let mut none = RayHit::none();
+        obvhs::fast_stack!(u32, (96, 192), self.bvh.max_depth, stack, {
+            self.bvh.ray_traverse_dynamic(&mut stack, entry.ray, &mut none, leaf);
+        });
+    }
+}
+
+impl Entry {
+    /// A distance in the hierarchy's frame, rounded up.
+    fn limit(&self, t: f64, half_extent: f64) -> f32 {
+        (((t - self.skipped) / half_extent) as f32).next_up()
+    }
+}
+
+fn round_down(corner: DVec3) -> Vec3A {
+    Vec3A::from_array(corner.to_array().map(|x| {
+        let nearest = x as f32;
+        if f64::from(nearest) > x { nearest.next_down() } else { nearest }
+    }))
+}
+
+fn round_up(corner: DVec3) -> Vec3A {
+    -round_down(-corner)
+}

@@ -1,0 +1,9 @@
+//! Shapes, and the aggregate that finds which of them a ray meets.
+
+mod aggregate;
+mod hit;
+pub mod shape;
+
+pub use aggregate::{Aggregate, Item, Passage, Shadow};
+pub use hit::{Hit, Ray, SurfaceId};
+pub use shape::Shape;
