@@ -18,8 +18,8 @@ const RENDERER_ARROWS: &[(&str, &[&str])] = &[
     ("crex", &["component", "work"]),
     ("pattern", &["cal", "color", "math"]),
     ("material", &["component", "color", "math", "pattern", "sample"]),
-    ("scene", &["rad", "material", "color", "component", "math", "pattern", "sample"]),
-    ("geometry", &["scene", "math", "color", "material"]),
+    ("geometry", &["math"]),
+    ("scene", &["rad", "material", "geometry", "color", "component", "math", "pattern", "sample"]),
     ("film", &["component", "raster", "color"]),
     ("features", &["raster", "color"]),
     (
