@@ -1,0 +1,81 @@
+//! `glass`: a pane thin enough to have one surface, without offset of what is seen through it.
+
+use super::arguments::{ArgumentError, Arguments};
+use super::fresnel;
+use super::lobe::{Lobe, Spread};
+use super::{Event, Interaction};
+use crate::color::Rgb;
+
+/// Refractive index unless given.
+const GLASS_INDEX: f64 = 1.52;
+
+/// Least transmissivity; black panes would otherwise give 0/0. Radiance has the same floor.
+const LEAST_TRANSMISSIVITY: f64 = 1e-15;
+
+/// A thin pane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glass {
+    /// Transmissivity at normal incidence: the fraction left after one passage through the pane, without reflections.
+    transmissivity: Rgb,
+    index: f64,
+}
+
+/// What a pane passes and reflects, interreflections inside it included.
+struct Pane {
+    transmitted: Rgb,
+    reflected: Rgb,
+}
+
+impl Glass {
+    /// From `R G B` or `R G B index`: transmissivities, not transmittances (88 % transmittance is .96).
+    ///
+    /// # Errors
+    /// If their number is not 3 or 4, a transmissivity is negative or the index is below 1.
+    pub fn from_reals(reals: &[f64]) -> Result<Self, ArgumentError> {
+        let mut arguments = Arguments::new(reals, &[3, 4], "3 or 4", "red green blue [refractive-index]")?;
+        let transmissivity = arguments.color()?;
+        let index = if reals.len() == 4 {
+            arguments.take("refractive index", "a finite number, 1 or more", |x| (1.0..f64::INFINITY).contains(&x))?
+        } else {
+            GLASS_INDEX
+        };
+        Ok(Self { transmissivity, index })
+    }
+
+    /// Transmittance and reflectance of a pane, the mean of both polarisations (Radiance reference manual, `glass`).
+    fn pane(&self, cosine: f64) -> Pane {
+        let cosine_inside = (1.0 - (1.0 - cosine * cosine) / (self.index * self.index)).sqrt();
+        let once = self.transmissivity.max(Rgb::splat(LEAST_TRANSMISSIVITY)).powf(1.0 / cosine_inside);
+        let once2 = once * once;
+        let mut pane = Pane { transmitted: Rgb::ZERO, reflected: Rgb::ZERO };
+        for r in fresnel::boundary(1.0 / self.index, cosine, cosine_inside) {
+            let series = Rgb::ONE - once2 * (r * r);
+            pane.transmitted += once * (0.5 * (1.0 - r) * (1.0 - r)) / series;
+            pane.reflected += (Rgb::ONE + once2 * (1.0 - 2.0 * r)) * (0.5 * r) / series;
+        }
+        if self.transmissivity == Rgb::ZERO {
+            pane.transmitted = Rgb::ZERO;
+        }
+        pane
+    }
+
+    /// Gives each lobe to `spawn`, in a fixed order.
+    pub fn scatter(&self, interaction: &Interaction, mut spawn: impl FnMut(Lobe)) {
+        let pane = self.pane(interaction.cosine);
+        let lobes = [
+            (Event::PaneTransmission, interaction.incoming, pane.transmitted),
+            (Event::PaneReflection, interaction.reflected(), pane.reflected),
+        ];
+        for (event, direction, coefficient) in lobes {
+            if coefficient.max_element() > 0.0 {
+                spawn(Lobe { event, spread: Spread::Ideal(direction), coefficient, medium: None });
+            }
+        }
+    }
+
+    /// The fraction of a light that a shadow ray brings through, per channel.
+    #[must_use]
+    pub fn shadow(&self, interaction: &Interaction) -> Rgb {
+        self.pane(interaction.cosine).transmitted
+    }
+}
