@@ -6,6 +6,7 @@ pub mod crex;
 pub mod geometry;
 pub mod material;
 pub mod math;
+pub mod rad;
 pub mod raster;
 pub mod schedule;
 pub mod work;
