@@ -4,6 +4,7 @@ pub mod color;
 pub mod component;
 pub mod crex;
 pub mod geometry;
+pub mod importance;
 pub mod material;
 pub mod math;
 pub mod rad;

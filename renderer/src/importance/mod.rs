@@ -1,0 +1,3 @@
+//! Where people look: maps in [0, 1] that say how much a pixel matters.
+
+pub mod saliency;
