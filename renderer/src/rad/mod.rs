@@ -16,6 +16,7 @@ mod resolve;
 mod spelling;
 mod statement;
 mod view;
+mod view_text;
 
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,7 @@ pub use error::{Error, MAX_ERRORS};
 pub use files::{DiskFiles, Files, Found, MemoryFiles};
 pub use kind::{Class, Kind};
 pub use view::{ViewKind, ViewSpec};
+pub use view_text::BadOption;
 
 use error::Problems;
 use statement::Statement;

@@ -1,5 +1,7 @@
 //! Views as rpict(1) takes them: `-vt -vp -vd -vu -vh -vv -vo -va -vs -vl`.
 
+use std::fmt;
+
 /// The projection, by the letter after `-vt`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ViewKind {
@@ -88,5 +90,26 @@ impl Default for ViewSpec {
             shift: 0.0,
             lift: 0.0,
         }
+    }
+}
+
+impl fmt::Display for ViewSpec {
+    /// All options, as they stand after `VIEW=` in a picture's header; every number reads back to the same bits.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "-vt{}", self.kind.letter())?;
+        for (option, [x, y, z]) in [("-vp", self.point), ("-vd", self.direction), ("-vu", self.up)] {
+            write!(f, " {option} {x} {y} {z}")?;
+        }
+        for (option, value) in [
+            ("-vh", self.horizontal),
+            ("-vv", self.vertical),
+            ("-vo", self.fore),
+            ("-va", self.aft),
+            ("-vs", self.shift),
+            ("-vl", self.lift),
+        ] {
+            write!(f, " {option} {value}")?;
+        }
+        Ok(())
     }
 }
