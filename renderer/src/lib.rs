@@ -9,5 +9,6 @@ pub mod material;
 pub mod math;
 pub mod rad;
 pub mod raster;
+pub mod scene;
 pub mod schedule;
 pub mod work;

@@ -1,0 +1,159 @@
+//! Scene text gets its meaning: the only reader of [`rad::Document`].
+//!
+//! Only what surfaces use is built; a modifier that nothing uses may be of any type. What the renderer cannot draw is an error at
+//! the primitive's place, never left out silently.
+
+mod materials;
+mod shapes;
+
+use super::light::Light;
+use super::{DEFAULT_RELAYS, FarId, FarSource, Scene, SourceId, Surface};
+use crate::geometry::{Shape, SurfaceId};
+use crate::material::{EmitterKind, Material, MaterialId};
+use crate::rad::{self, Argument, Class, Document, Kind, Primitive};
+use materials::Materials;
+
+/// Errors and warnings with their places, as many of each as one reads.
+struct Reporter<'a> {
+    document: &'a Document,
+    errors: Vec<rad::Error>,
+    warnings: Vec<rad::Error>,
+    unlisted_warnings: usize,
+}
+
+impl Reporter<'_> {
+    fn error(&mut self, primitive: &Primitive, argument: Argument, message: impl Into<String>) {
+        if !self.full() {
+            self.errors.push(self.document.argument_error(primitive, argument, message));
+        }
+    }
+
+    fn warn(&mut self, primitive: &Primitive, argument: Argument, message: impl Into<String>) {
+        if self.warnings.len() < rad::MAX_ERRORS {
+            self.warnings.push(self.document.argument_error(primitive, argument, message));
+        } else {
+            self.unlisted_warnings += 1;
+        }
+    }
+
+    /// Whether enough errors are known.
+    fn full(&self) -> bool {
+        self.errors.len() >= rad::MAX_ERRORS
+    }
+}
+
+impl Scene {
+    /// Gives a document its meaning. Mirrors relay lights over [`DEFAULT_RELAYS`] reflections; see [`Self::set_relays`].
+    ///
+    /// # Errors
+    /// Every primitive that is not supported yet or has an argument out of range, with its place; at most
+    /// [`rad::MAX_ERRORS`].
+    pub fn from_rad(document: &Document) -> Result<Self, Vec<rad::Error>> {
+        let reporter = Reporter { document, errors: Vec::new(), warnings: Vec::new(), unlisted_warnings: 0 };
+        let mut builder = Builder { document, reporter, scene: Self::default(), materials: Materials::default() };
+        for (index, primitive) in document.primitives.iter().enumerate() {
+            if primitive.kind.class() == Class::Surface && !builder.reporter.full() {
+                builder.add_surface(index, primitive);
+            }
+        }
+        let Builder { reporter, mut scene, .. } = builder;
+        if !reporter.errors.is_empty() {
+            return Err(reporter.errors);
+        }
+        scene.warnings = reporter.warnings;
+        if reporter.unlisted_warnings > 0 {
+            let message = format!("{} more warnings like these", reporter.unlisted_warnings);
+            scene.warnings.push(rad::Error::of_file("scene", message));
+        }
+        scene.set_relays(DEFAULT_RELAYS);
+        Ok(scene)
+    }
+}
+
+struct Builder<'a> {
+    document: &'a Document,
+    reporter: Reporter<'a>,
+    scene: Scene,
+    materials: Materials,
+}
+
+impl Builder<'_> {
+    fn add_surface(&mut self, index: usize, primitive: &Primitive) {
+        let material = match primitive.modifier {
+            Some(modifier) => {
+                self.materials.of_modifier(modifier, index, &mut self.scene.materials, &mut self.reporter)
+            }
+            None => None,
+        };
+        match primitive.kind {
+            Kind::Source => self.add_far(primitive, material),
+            Kind::Instance | Kind::Mesh => {
+                self.reporter.error(primitive, Argument::Kind, materials::unsupported(primitive));
+            }
+            _ => {
+                if let Some(shape) = shapes::read(primitive, &mut self.reporter) {
+                    self.add_shape(primitive, material, shape);
+                }
+            }
+        }
+    }
+
+    fn add_shape(&mut self, primitive: &Primitive, material: Option<MaterialId>, shape: Shape) {
+        let Ok(id) = u32::try_from(self.scene.surfaces.len()) else {
+            self.reporter.error(primitive, Argument::Kind, "the scene has more than 2^32 surfaces");
+            return;
+        };
+        let id = SurfaceId(id);
+        if let Some(Material::Emitter(emitter)) = material.map(|id| &self.scene.materials[id.index()])
+            && emitter.illuminates()
+        {
+            self.scene.lights.push(Light::of_surface(id, &shape, *emitter));
+        }
+        let mirror = material.is_some_and(|id| matches!(self.scene.materials[id.index()], Material::Mirror(_)));
+        if mirror && !shape.is_flat() {
+            let message = format!(
+                "mirror `{}` is curved, so it reflects what is seen but casts no light; only polygons and rings do",
+                primitive.name
+            );
+            self.reporter.warn(primitive, Argument::Kind, message);
+        }
+        self.scene.surfaces.push(Surface {
+            shape,
+            material,
+            name: self.scene.names.id(&primitive.name),
+            modifier: primitive.modifier.map(|index| self.scene.names.id(&self.document.primitives[index].name)),
+            precedence: primitive.modifier.and_then(|index| u32::try_from(index + 1).ok()).unwrap_or(0),
+        });
+    }
+
+    fn add_far(&mut self, primitive: &Primitive, material: Option<MaterialId>) {
+        let Some((axis, angle_deg)) = shapes::read_source(primitive, &mut self.reporter) else { return };
+        let Some(material) = material else { return };
+        let Material::Emitter(emitter) = self.scene.materials[material.index()] else {
+            let message = format!(
+                "source `{}` does not show: its material does not emit; use light, glow or illum",
+                primitive.name
+            );
+            self.reporter.warn(primitive, Argument::Modifier, message);
+            return;
+        };
+        if matches!(emitter.kind(), EmitterKind::Spot(_)) {
+            let message =
+                format!("source `{}`: a spotlight that is infinitely far away has no focal length", primitive.name);
+            self.reporter.warn(primitive, Argument::Modifier, message);
+        }
+        let Ok(id) = u32::try_from(self.scene.far.len()) else {
+            self.reporter.error(primitive, Argument::Kind, "the scene has more than 2^32 sources");
+            return;
+        };
+        let far = FarSource::new(material, self.scene.names.id(&primitive.name), axis, angle_deg);
+        // A distant glow is sky: found by diffuse rays, not aimed at, whatever its radius.
+        if emitter.illuminates() && !matches!(emitter.kind(), EmitterKind::Glow { .. }) {
+            self.scene.lights.push(Light::distant(SourceId::Far(FarId(id)), axis, far.versine(), emitter));
+        }
+        self.scene.far.push(far);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,115 @@
+//! Light sources for direct light: points of them, chosen at random, and how large they look.
+//!
+//! One sample of a light is an unbiased estimate of its direct light: contribution = f(l) x radiance x solid angle, where f(l) is
+//! reflectance with the cosine. Points are uniform over the true shape, where rpict approximates: it samples triangles and polygons of
+//! more than four vertices as a square of equal area around the centroid, and gives every sample of a sphere the
+//! solid angle pi r^2/d^2 instead of 2 pi (1 - cos).
+
+mod patch;
+mod relay;
+mod sampler;
+
+use glam::DVec3;
+
+use super::SourceId;
+use crate::color::Rgb;
+use crate::geometry::{Shape, SurfaceId};
+use crate::material::{Emitter, EmitterKind};
+
+pub use relay::Leg;
+use relay::Plane;
+pub(super) use relay::relayed;
+use sampler::Sampler;
+
+/// A light source, or the image of one in mirrors.
+#[derive(Clone, Debug)]
+pub struct Light {
+    source: SourceId,
+    emitter: Emitter,
+    sampler: Sampler,
+    /// The mirrors between a lit point and the source, nearest to the point first.
+    relay: Vec<SurfaceId>,
+    planes: Vec<Plane>,
+}
+
+/// A direction from which a light shines on a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Unit vector from the point towards the light (towards its image, if mirrors relay it).
+    pub dir: DVec3,
+    /// Length of the way to the light, over all mirrors; infinite for distant sources.
+    pub distance: f64,
+    /// Steradians for which the sample stands: one over its density, with a spotlight's loss over its focal length.
+    pub solid_angle: f64,
+    /// Radiance that arrives if nothing is in the way.
+    pub radiance: Rgb,
+}
+
+impl Light {
+    /// A light of a surface's shape.
+    pub(super) fn of_surface(surface: SurfaceId, shape: &Shape, emitter: Emitter) -> Self {
+        let sampler = Sampler::of_shape(shape);
+        Self { source: SourceId::Surface(surface), emitter, sampler, relay: Vec::new(), planes: Vec::new() }
+    }
+
+    /// A distant light, `versine` being 1 - cosine of its half angle.
+    pub(super) fn distant(source: SourceId, axis: DVec3, versine: f64, emitter: Emitter) -> Self {
+        let sampler = Sampler::Distant { axis, versine };
+        Self { source, emitter, sampler, relay: Vec::new(), planes: Vec::new() }
+    }
+
+    /// What shines.
+    #[must_use]
+    pub fn source(&self) -> SourceId {
+        self.source
+    }
+
+    /// The mirrors that light meets on its way, the one nearest to the lit point first; empty for the source itself.
+    #[must_use]
+    pub fn relay(&self) -> &[SurfaceId] {
+        &self.relay
+    }
+
+    /// How it emits.
+    #[must_use]
+    pub fn emitter(&self) -> &Emitter {
+        &self.emitter
+    }
+
+    /// Chooses a point of the light by `u` in [0,1)^2, as seen from the point `from`. `None` if that point of it does not shine
+    /// this way: it faces away, lies out of a spotlight's cone or beyond a glow's radius.
+    #[must_use]
+    pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        // What mirrors show at `from` is what is there at its image behind them.
+        let mut image = from;
+        for plane in &self.planes {
+            image = plane.reflect_point_in_front(image)?;
+        }
+        let mut sample = self.sampler.sample(image, u)?;
+        match self.emitter.kind() {
+            EmitterKind::Glow { radius } if sample.distance > radius => return None,
+            EmitterKind::Spot(spot) => {
+                if !spot.contains(-sample.dir) {
+                    return None;
+                }
+                if sample.distance.is_finite() {
+                    let falloff = sample.distance / (sample.distance + spot.focal_length());
+                    sample.solid_angle *= falloff * falloff;
+                }
+            }
+            _ => {}
+        }
+        for plane in self.planes.iter().rev() {
+            sample.dir = plane.reflect_direction(sample.dir);
+        }
+        (sample.solid_angle > 0.0 && sample.solid_angle.is_finite()).then_some(LightSample {
+            dir: sample.dir,
+            distance: sample.distance,
+            solid_angle: sample.solid_angle,
+            radiance: self.emitter.radiance(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;
