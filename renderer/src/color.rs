@@ -22,3 +22,17 @@ pub fn brightness(radiance: Rgb) -> f64 {
 pub fn luminance_cd_m2(radiance: Rgb) -> f64 {
     WHITE_EFFICACY * brightness(radiance)
 }
+
+/// The sRGB code in [0, 1] (IEC 61966-2-1) that shows a linear intensity; intensities outside [0, 1] are clamped.
+#[must_use]
+pub fn srgb_encode(linear: f64) -> f64 {
+    let linear = linear.clamp(0.0, 1.0);
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The linear intensity in [0, 1] of an sRGB code in [0, 1] (IEC 61966-2-1); codes outside are clamped.
+#[must_use]
+pub fn srgb_decode(code: f64) -> f64 {
+    let code = code.clamp(0.0, 1.0);
+    if code <= 0.040_45 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+}

@@ -7,6 +7,7 @@ pub mod geometry;
 pub mod importance;
 pub mod material;
 pub mod math;
+pub mod picture;
 pub mod rad;
 pub mod raster;
 pub mod scene;
