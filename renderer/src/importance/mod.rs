@@ -1,3 +1,6 @@
 //! Where people look: maps in [0, 1] that say how much a pixel matters.
 
+pub mod distance;
+pub mod fovea;
+pub mod map;
 pub mod saliency;
