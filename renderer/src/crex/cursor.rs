@@ -137,7 +137,7 @@ impl<'p> Cursor<'p> {
                     self.repeating.push(Repeating { begin, iteration: 0, traced_before: self.traced });
                     self.at += 1;
                 }
-                Op::End { repeat, quiet, span, .. } => self.end_run(repeat, quiet, span),
+                Op::End { repeat, quiet, span } => self.end_run(repeat, quiet, span),
                 Op::CloseTimed => self.at += 1,
                 Op::Run(_) | Op::OpenTimed(_) | Op::Release => return Some(op),
             }

@@ -55,7 +55,9 @@ impl Words<'_> {
             if within == Some(Group::Importance) {
                 let (threshold, rest) = self.thresholds.split_first().expect("a threshold for every member");
                 self.thresholds = rest;
-                write!(line, "on pixels of importance {threshold} and more, ").expect("a String takes all");
+                let rounded = format!("{threshold:.3}");
+                let shown = rounded.trim_end_matches('0').trim_end_matches('.');
+                write!(line, "on pixels of importance {shown} and more, ").expect("a String takes all");
             }
             line.push_str(&self.often(item));
             match item.atom() {
@@ -82,13 +84,13 @@ impl Words<'_> {
         let mut words = String::new();
         for multiplier in item.multipliers().iter().rev() {
             match multiplier.repeat {
-                Repeat::Times(times) if times.get() == 1 => words.push_str("once, "),
+                Repeat::Times(times) if times.get() == 1 => {}
                 Repeat::Times(times) => write!(words, "{times} times in a row, ").expect("a String takes all"),
                 Repeat::UntilEmpty => words.push_str("again and again until a run traces no ray, "),
             }
         }
-        if self.held && !item.multipliers().is_empty() {
-            words.push_str("of which only the first run finds rays, ");
+        if self.held && !words.is_empty() {
+            words.push_str("though only the first run finds rays, ");
         }
         words
     }

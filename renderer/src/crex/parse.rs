@@ -189,6 +189,7 @@ impl<'t> Parser<'t> {
         let depth = self.frames.len() - 1;
         let Some(part) = self.frame().parts.last_mut() else {
             self.error(ErrorKind::NothingToMultiply, span);
+            self.stand_in(span);
             return;
         };
         part.height += usize::from(!part.item.multipliers.is_empty());

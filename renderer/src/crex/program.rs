@@ -22,8 +22,9 @@ pub(super) enum Op {
     Run(u32),
     /// A repeat begins.
     Begin,
-    /// A repeat's body has ended; `begin` is where it began.
-    End { begin: u32, repeat: Repeat, quiet: u32, span: Span },
+    /// A run of the innermost repeat's body has ended. One that traced nothing is followed by another only while fewer
+    /// than `quiet` have run.
+    End { repeat: Repeat, quiet: u32, span: Span },
     /// An outermost `[ ]` begins.
     OpenTimed(GroupId),
     /// An outermost `[ ]` ends.
@@ -192,20 +193,22 @@ impl Lowering {
         // `T2*` is `(T2)*`: the last multiplier is the outermost. A multiplier of 1 is no repeat.
         let repeats =
             || item.multipliers().iter().filter(|multiplier| multiplier.repeat != Repeat::Times(NonZeroU32::MIN));
-        let begins: Vec<usize> = repeats().map(|_| self.push(Op::Begin)).collect();
-        self.repeats += begins.len();
+        for _ in repeats() {
+            self.push(Op::Begin);
+            self.repeats += 1;
+        }
         self.program.repeat_depth = self.program.repeat_depth.max(self.repeats);
 
         let mut stages = self.atom(item, place);
 
-        for (multiplier, begin) in repeats().zip(begins.into_iter().rev()) {
+        for multiplier in repeats() {
             let mut quiet = 1;
             if let Repeat::Times(times) = multiplier.repeat {
                 let allowed = (QUIET_STAGES / stages.max(1)).clamp(1, u64::from(times.get()));
                 quiet = u32::try_from(allowed).expect("at most QUIET_STAGES");
                 stages = stages.saturating_mul(allowed);
             }
-            self.push(Op::End { begin: index(begin), repeat: multiplier.repeat, quiet, span: multiplier.span });
+            self.push(Op::End { repeat: multiplier.repeat, quiet, span: multiplier.span });
             self.repeats -= 1;
         }
         stages
@@ -263,10 +266,8 @@ impl Lowering {
         stages
     }
 
-    /// Appends an instruction and gives its place.
-    fn push(&mut self, op: Op) -> usize {
+    fn push(&mut self, op: Op) {
         self.program.ops.push(op);
-        self.program.ops.len() - 1
     }
 }
 
