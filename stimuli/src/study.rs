@@ -4,6 +4,8 @@ mod judge;
 mod locate;
 mod picture;
 mod protocol;
+#[cfg(test)]
+mod shipped;
 mod validate;
 
 use std::path::{Path, PathBuf};
