@@ -46,9 +46,13 @@ pub enum Error {
 }
 
 impl Error {
-    /// Whether the input is wrong (as against unreadable).
+    /// True where the input is wrong (exit code 2), false where the machine could not (exit code 1). A file that is not
+    /// there is wrong input.
     #[must_use]
-    pub fn is_content(&self) -> bool {
-        matches!(self, Self::Content { .. })
+    pub fn is_input(&self) -> bool {
+        match self {
+            Self::Content { .. } => true,
+            Self::Io { source, .. } => source.kind() == std::io::ErrorKind::NotFound,
+        }
     }
 }

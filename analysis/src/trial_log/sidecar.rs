@@ -2,7 +2,10 @@
 
 use serde::Serialize;
 
+use stimuli::Study;
+
 use super::{COLUMNS, Column};
+use crate::plan::Plan;
 
 /// The sidecar of a log: `LOG.json` beside `LOG.csv`.
 #[derive(Clone, Debug, Serialize)]
@@ -30,6 +33,12 @@ impl Sidecar {
             analysis_plan_hash,
             columns: COLUMNS.to_vec(),
         }
+    }
+
+    /// The sidecar of a log of `study`, with the hash of the study's analysis plan.
+    #[must_use]
+    pub fn of_study(log: &str, study: &Study, version: &str) -> Self {
+        Self::new(log, &study.id, version, Plan::of(study).map(|plan| plan.hash().to_string()))
     }
 
     /// The sidecar's text.

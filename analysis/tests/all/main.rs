@@ -1,0 +1,7 @@
+//! What needs whole logs, or the program.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod bad_logs;
+mod logs;
+mod program;
+mod reports;
