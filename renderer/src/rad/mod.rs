@@ -25,6 +25,7 @@ pub use document::{Argument, Document, Primitive, SourceFile, Span};
 pub use error::{Error, MAX_ERRORS};
 pub use files::{DiskFiles, Files, Found, MemoryFiles};
 pub use kind::{Class, Kind};
+pub use spelling::nearest;
 pub use view::{ViewKind, ViewSpec};
 pub use view_text::BadOption;
 

@@ -2,7 +2,8 @@
 
 /// The candidate within a third of the word's length in edits (insert, delete, replace), the nearest first; ties go to
 /// the alphabet, so that a message does not depend on the order of the candidates.
-pub(super) fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+#[must_use]
+pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let length = word.chars().count();
     // Long words are data, not slips of the keyboard, and cost the square of their length.
     if length > 64 {

@@ -1,2 +1,65 @@
-//! placeholder
-fn main() {}
+//! `crex`: Radiance scenes rendered by light-transport component, and what belongs to that. Words become a request, the library
+//! runs it, the outcome becomes an exit code: 0 done, 1 could not, 2 the input is wrong.
+
+mod compare;
+mod console;
+mod options;
+mod plan;
+mod spellings;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use console::Failure;
+use options::RadianceOptions;
+
+/// Renders Radiance scenes by light-transport component, in the order that a component regular expression says.
+#[derive(Parser, Debug)]
+#[command(name = "crex", version, propagate_version = true, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Explain a crex stage by stage
+    Plan(plan::Args),
+    /// Measure how far a picture lies from a reference
+    Compare(compare::Args),
+}
+
+/// The commands that take rpict's options.
+const RENDERING: [&str; 1] = ["render"];
+
+fn main() -> ExitCode {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    match run(words) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn run(words: Vec<OsString>) -> Result<(), Failure> {
+    let (words, _radiance) = radiance_options(words)?;
+    let matches =
+        Cli::command().after_long_help(spellings::help()).try_get_matches_from(words).map_err(Failure::Usage)?;
+    let cli = Cli::from_arg_matches(&matches).map_err(Failure::Usage)?;
+    match cli.command {
+        Command::Plan(args) => plan::run(&args),
+        Command::Compare(args) => compare::run(&args),
+    }
+}
+
+/// Takes rpict's options out of the words of a command that renders.
+fn radiance_options(words: Vec<OsString>) -> Result<(Vec<OsString>, RadianceOptions), Failure> {
+    let renders = words.get(1).is_some_and(|word| RENDERING.iter().any(|name| word == name));
+    if !renders {
+        return Ok((words, RadianceOptions::default()));
+    }
+    let cli = Cli::command();
+    let own = words.get(1).and_then(|name| cli.find_subcommand(name)).cloned().unwrap_or_default();
+    options::take(words, &own).map_err(Failure::Input)
+}

@@ -1,0 +1,141 @@
+//! The program `crex` from outside: exit codes, what goes to which stream, what messages say.
+
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use renderer::picture::{self, Compression, Picture, Provenance, Quantity};
+use renderer::raster::Raster;
+use serde_json::Value;
+
+fn crex(words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_crex")).args(words).stdin(Stdio::null()).output().unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn json(output: &Output) -> Value {
+    let text = std::str::from_utf8(&output.stdout).unwrap();
+    assert_eq!(text.lines().count(), 1, "one object and nothing else: {text}\n{}", stderr(output));
+    serde_json::from_str(text).unwrap()
+}
+
+fn grey(path: &Path, height: usize, values: &[f32]) {
+    let pixels = values.iter().map(|&value| [value; 3]).collect();
+    let beauty = Raster::from_values(values.len() / height, height, pixels).unwrap();
+    let made = Picture { quantity: Quantity::Radiance, beauty, layers: vec![], provenance: Provenance::default() };
+    picture::write(path, &made, Compression::Zip).unwrap();
+}
+
+#[test]
+fn a_wrong_command_line_is_exit_2_and_help_exit_0() {
+    for words in [&["nonsense"][..], &["plan"], &["compare", "a.exr"], &["plan", "T", "--nonsense"], &[]] {
+        let output = crex(words);
+        assert_eq!(code(&output), 2, "{words:?}");
+        assert!(output.stdout.is_empty());
+    }
+    for words in [["--help"], ["--version"]] {
+        let output = crex(&words);
+        assert_eq!(code(&output), 0);
+        assert!(output.stderr.is_empty());
+    }
+}
+
+#[test]
+fn plan_gives_the_contracts_tree() {
+    let output = crex(&["plan", "T{R2<S>}*", "--json"]);
+    assert_eq!(code(&output), 0);
+    let expected = serde_json::json!({"sequence": [
+        {"component": "T"},
+        {"repeat": "*", "item": {"group": "{}", "items": [
+            {"repeat": 2, "item": {"component": "R"}},
+            {"group": "<>", "items": [{"component": "S"}]},
+        ]}},
+    ]});
+    let plan = json(&output);
+    assert_eq!(plan["tree"], expected);
+    assert_eq!((&plan["valid"], &plan["crex"]), (&Value::Bool(true), &Value::from("T{R2<S>}*")));
+}
+
+#[test]
+fn plan_tells_errors_with_their_bytes_and_exits_2() {
+    let output = crex(&["plan", "T(R", "--json"]);
+    assert_eq!(code(&output), 2);
+    let plan = json(&output);
+    assert_eq!((&plan["valid"], &plan["tree"]), (&Value::Bool(false), &Value::Null));
+    assert_eq!(plan["errors"][0]["start"], 1);
+    let output = crex(&["plan", "T(R"]);
+    assert_eq!(code(&output), 2);
+    assert!(output.stdout.is_empty());
+    assert!(stderr(&output).contains('^'), "{}", stderr(&output));
+}
+
+#[test]
+fn compare_gives_the_contracts_object() {
+    let folder = tempfile::tempdir().unwrap();
+    let (a, b) = (folder.path().join("a.exr"), folder.path().join("b.exr"));
+    grey(&a, 2, &[1.0, 3.0, 1.0, 3.0]);
+    grey(&b, 2, &[2.0, 3.0, 2.0, 3.0]);
+    let (a, b) = (a.to_str().unwrap(), b.to_str().unwrap());
+    let output = crex(&["compare", a, b, "--json"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let report = json(&output);
+    let near = |key: &str, value: f64| assert!((report[key].as_f64().unwrap() - value).abs() < 1e-7, "{key}: {report}");
+    near("rmse", 0.5f64.sqrt());
+    near("rel_mse", 0.5 / 1.04);
+    near("mean_ratio", 1.25);
+    near("max_abs", 1.0);
+    assert_eq!(
+        (&report["identical"], &report["flip"], &report["jod"]),
+        (&Value::Bool(false), &Value::Null, &Value::Null)
+    );
+    assert_eq!((&report["width"], &report["height"]), (&Value::from(2), &Value::from(2)));
+    assert_eq!(json(&crex(&["compare", a, a, "--json"]))["identical"], true);
+}
+
+#[test]
+fn compare_sees_as_people_do_on_a_display() {
+    let folder = tempfile::tempdir().unwrap();
+    let (a, b, display) =
+        (folder.path().join("a.exr"), folder.path().join("b.exr"), folder.path().join("display.toml"));
+    let values = |bump: f32| (0..64 * 64).map(|i| 0.5 + bump * f32::from(i % 64 / 8 % 2 == 0)).collect::<Vec<f32>>();
+    grey(&a, 64, &values(0.0));
+    grey(&b, 64, &values(0.2));
+    std::fs::write(
+        &display,
+        "peak_cd_m2 = 250\nblack_cd_m2 = 0.5\nwidth_px = 1280\nheight_px = 1024\nwidth_m = 0.3372\ndistance_m = 0.6\n",
+    )
+    .unwrap();
+    let (a, b, display) = (a.to_str().unwrap(), b.to_str().unwrap(), display.to_str().unwrap());
+    let same = json(&crex(&["compare", a, a, "--json", "--display", display]));
+    assert_eq!((same["flip"].as_f64().unwrap(), same["jod"].as_f64().unwrap()), (0.0, 10.0));
+    let differs = json(&crex(&["compare", a, b, "--json", "--display", display]));
+    assert!(differs["flip"].as_f64().unwrap() > 0.02, "{differs}");
+    assert!(differs["jod"].as_f64().unwrap() < 9.5, "{differs}");
+}
+
+#[test]
+fn compare_refuses_what_it_cannot_compare() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    grey(Path::new(&path("a.exr")), 2, &[1.0; 4]);
+    grey(Path::new(&path("wide.exr")), 2, &[1.0; 8]);
+    grey(Path::new(&path("a.png")), 2, &[1.0; 4]);
+    std::fs::write(path("text.exr"), "not a picture").unwrap();
+    for (other, word) in [
+        ("wide.exr", "2 x 2 pixels, the picture 4 x 2"),
+        ("a.png", "compare two of a kind"),
+        ("text.exr", "is not a picture"),
+        ("missing.exr", "cannot be read"),
+    ] {
+        let output = crex(&["compare", &path("a.exr"), &path(other)]);
+        assert_eq!(code(&output), 2, "{other}");
+        assert!(output.stdout.is_empty());
+        assert!(stderr(&output).contains(word), "{}", stderr(&output));
+    }
+}
