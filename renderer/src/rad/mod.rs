@@ -5,18 +5,25 @@
 //! manual ("Scene Description") and the manual pages named where they apply.
 
 mod arguments;
+mod command;
 mod document;
 mod error;
+mod expand;
 mod files;
+mod generate;
 mod kind;
 mod lexer;
 mod number;
+mod options;
 mod parse;
+mod place;
 mod resolve;
 mod spelling;
 mod statement;
+mod transform;
 mod view;
 mod view_text;
+mod xform;
 
 #[cfg(test)]
 mod tests;
@@ -25,12 +32,14 @@ pub use document::{Argument, Document, Primitive, SourceFile, Span};
 pub use error::{Error, MAX_ERRORS};
 pub use files::{DiskFiles, Files, Found, MemoryFiles};
 pub use kind::{Class, Kind};
+pub use options::{Commands, Limits, Options};
 pub use spelling::nearest;
+pub use transform::{BadTransform, Transform};
 pub use view::{ViewKind, ViewSpec};
 pub use view_text::BadOption;
 
-use error::Problems;
-use statement::Statement;
+use expand::Loader;
+use resolve::Resolver;
 
 /// A scene text to read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,33 +66,34 @@ impl From<Found> for Source {
     }
 }
 
-/// How to read.
-#[derive(Clone, Debug, Default)]
-pub struct Options {}
-
-/// Reads several texts as one scene, in order.
+/// Reads several texts as one scene, in order; `files` finds what their commands name.
 ///
 /// # Errors
 /// All problems that were found, at most [`MAX_ERRORS`].
-pub fn read(files: &[Source], _resolver: &dyn Files, _options: &Options) -> Result<Document, Vec<Error>> {
-    let mut problems = Problems::default();
-    let mut sources: Vec<SourceFile> = Vec::new();
-    let mut statements: Vec<Statement> = Vec::new();
-    for file in files {
-        let source = SourceFile { name: file.name.clone(), text: decode(&file.bytes), read_by: None };
-        let Some(index) = u32::try_from(source.text.len()).ok().and_then(|_| u32::try_from(sources.len()).ok()) else {
-            problems.add(Error::of_file(&file.name, "the file is too large"));
-            continue;
+pub fn read(texts: &[Source], files: &dyn Files, options: &Options<'_>) -> Result<Document, Vec<Error>> {
+    let mut loader = Loader::new(files, options);
+    let nodes: Vec<_> = texts.iter().filter_map(|text| loader.text(text)).collect();
+    loader.admit(&nodes);
+    let Loader { sources, mut problems, warnings, incomplete, .. } = loader;
+    // Names that a failed command would have defined are not the fault of those who use them.
+    if incomplete || problems.full() {
+        return Err(problems.into_errors());
+    }
+    let mut resolver = Resolver::new(sources);
+    let mut lost = Vec::new();
+    for node in &nodes {
+        let note_lost = &mut |span, name: &str| {
+            if lost.len() < MAX_ERRORS {
+                lost.push((span, format!("the transform carries `{name}` beyond the range of numbers")));
+            }
         };
-        statements.extend(parse::parse(index, &source, &mut problems));
-        sources.push(source);
+        expand::emit(node, &mut |statement| resolver.statement(statement), note_lost);
     }
-    for statement in &statements {
-        if let Statement::Command(span) = statement {
-            problems.add(document::error_at(&sources, *span, "commands in scenes are not supported yet"));
-        }
+    let mut document = resolver.finish(&mut problems);
+    for (span, message) in lost {
+        problems.add(document.error(span, message));
     }
-    let document = resolve::resolve(sources, statements, &mut problems);
+    document.warnings = warnings;
     if problems.is_empty() { Ok(document) } else { Err(problems.into_errors()) }
 }
 

@@ -4,7 +4,7 @@
 //! primitive could and go to the line's end. (Reference manual, section "Scene Description Format".)
 
 use super::arguments::check_counts;
-use super::document::{SourceFile, Span};
+use super::document::{SourceFile, Span, error_at};
 use super::error::{Error, Problems};
 use super::kind::Kind;
 use super::lexer::{Lexer, Word};
@@ -21,9 +21,10 @@ pub(super) const INHERIT: &str = "inherit";
 /// No modifier.
 pub(super) const VOID: &str = "void";
 
-/// Cuts a text into statements; problems go to `problems` and reading goes on where the next primitive seems to start.
-pub(super) fn parse(source: u32, file: &SourceFile, problems: &mut Problems) -> Vec<Statement> {
-    let mut parser = Parser { source, file, lexer: Lexer::new(&file.text, 0), statements: Vec::new() };
+/// Cuts the text `sources[source]` into statements; problems go to `problems` and reading goes on where the next primitive seems to start.
+pub(super) fn parse(source: u32, sources: &[SourceFile], problems: &mut Problems) -> Vec<Statement> {
+    let Some(file) = sources.get(source as usize) else { return Vec::new() };
+    let mut parser = Parser { source, sources, file, lexer: Lexer::new(&file.text, 0), statements: Vec::new() };
     while let Some(byte) = parser.lexer.peek() {
         match byte {
             b'#' => parser.lexer.skip_line(),
@@ -47,6 +48,7 @@ pub(super) fn parse(source: u32, file: &SourceFile, problems: &mut Problems) -> 
 
 struct Parser<'a> {
     source: u32,
+    sources: &'a [SourceFile],
     file: &'a SourceFile,
     lexer: Lexer<'a>,
     statements: Vec<Statement>,
@@ -60,7 +62,7 @@ impl<'a> Parser<'a> {
     }
 
     fn error(&self, start: usize, end: usize, message: impl Into<String>) -> Error {
-        Error::in_text(&self.file.name, &self.file.text, start, end, message)
+        error_at(self.sources, self.span(start, end), message)
     }
 
     /// The next word; the end of the text, or a quote that never ends, is an error.

@@ -4,50 +4,11 @@
 
 use std::collections::HashSet;
 
-use super::document::{Argument, Document, Names, Primitive, SourceFile, Span, error_at};
-use super::error::Problems;
+use super::document::{Argument, Document, Names, Primitive, SourceFile, Span};
+use super::error::{MAX_ERRORS, Problems};
 use super::parse::{INHERIT, VOID};
 use super::spelling::nearest;
 use super::statement::{Alias, Draft, Statement};
-
-/// Statements without commands to a document.
-pub(super) fn resolve(
-    sources: Vec<SourceFile>,
-    statements: impl IntoIterator<Item = Statement>,
-    problems: &mut Problems,
-) -> Document {
-    let mut resolver = Resolver {
-        sources,
-        primitives: Vec::new(),
-        names: Names::default(),
-        broken: HashSet::new(),
-        wrong: Vec::new(),
-    };
-    for statement in statements {
-        match statement {
-            Statement::Primitive(draft) => resolver.primitive(draft),
-            Statement::Alias(alias) => resolver.alias(&alias),
-            Statement::Broken(name) => {
-                resolver.broken.insert(name);
-            }
-            // The caller has run them.
-            Statement::Command(_) => {}
-        }
-        if resolver.wrong.len() >= super::error::MAX_ERRORS {
-            break;
-        }
-    }
-    let wrong = std::mem::take(&mut resolver.wrong);
-    let document = Document::new(resolver.sources, resolver.primitives, resolver.names);
-    for Wrong { primitive, span, argument, message } in wrong {
-        let span = match primitive {
-            Some(primitive) => document.argument_span(&primitive, argument),
-            None => span,
-        };
-        problems.add(error_at(&document.sources, span, message));
-    }
-    document
-}
 
 /// A problem, kept until the document can say where it is.
 struct Wrong {
@@ -57,7 +18,8 @@ struct Wrong {
     message: String,
 }
 
-struct Resolver {
+/// Takes statements in order.
+pub(super) struct Resolver {
     sources: Vec<SourceFile>,
     primitives: Vec<Primitive>,
     names: Names,
@@ -66,6 +28,41 @@ struct Resolver {
 }
 
 impl Resolver {
+    pub(super) fn new(sources: Vec<SourceFile>) -> Self {
+        Self { sources, primitives: Vec::new(), names: Names::default(), broken: HashSet::new(), wrong: Vec::new() }
+    }
+
+    pub(super) fn statement(&mut self, statement: Statement) {
+        match statement {
+            Statement::Primitive(draft) => self.primitive(draft),
+            Statement::Alias(alias) => self.alias(&alias),
+            Statement::Broken(name) => {
+                self.broken.insert(name);
+            }
+            // What it stands for follows.
+            Statement::Command(_) => {}
+        }
+    }
+
+    /// The document; what was wrong goes to `problems`.
+    pub(super) fn finish(self, problems: &mut Problems) -> Document {
+        let document = Document::new(self.sources, self.primitives, self.names);
+        for Wrong { primitive, span, argument, message } in self.wrong {
+            let span = match primitive {
+                Some(primitive) => document.argument_span(&primitive, argument),
+                None => span,
+            };
+            problems.add(document.error(span, message));
+        }
+        document
+    }
+
+    fn wrong(&mut self, wrong: Wrong) {
+        if self.wrong.len() < MAX_ERRORS && !wrong.message.is_empty() {
+            self.wrong.push(wrong);
+        }
+    }
+
     fn primitive(&mut self, draft: Draft) {
         let modifier = self.meaning(&draft.modifier);
         let index = self.primitives.len();
@@ -85,15 +82,8 @@ impl Resolver {
             } else {
                 self.undefined(&draft.modifier)
             };
-            if !message.is_empty() {
-                let span = primitive.span;
-                self.wrong.push(Wrong {
-                    primitive: Some(primitive.clone()),
-                    span,
-                    argument: Argument::Modifier,
-                    message,
-                });
-            }
+            let span = primitive.span;
+            self.wrong(Wrong { primitive: Some(primitive.clone()), span, argument: Argument::Modifier, message });
         }
         if primitive.kind.is_modifier() {
             self.broken.remove(&primitive.name);
@@ -136,9 +126,7 @@ impl Resolver {
 
     fn alias_problem(&mut self, alias: &Alias, message: String) {
         self.broken.insert(alias.name.clone());
-        if !message.is_empty() {
-            self.wrong.push(Wrong { primitive: None, span: alias.span, argument: Argument::Modifier, message });
-        }
+        self.wrong(Wrong { primitive: None, span: alias.span, argument: Argument::Modifier, message });
     }
 
     fn meaning(&self, name: &str) -> Option<usize> {
