@@ -183,7 +183,7 @@ impl<'p> Cursor<'p> {
             span: (letter.span.start, letter.span.end),
             run: *run,
             threshold: letter.threshold.map(|index| self.thresholds[index as usize]),
-            held: letter.held,
+            held: letter.hold.is_some(),
             group: letter.group,
         }
     }

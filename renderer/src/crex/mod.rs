@@ -20,7 +20,7 @@ pub use cursor::{Cursor, Task};
 pub use error::{Error, ErrorKind};
 pub use explain::explain;
 pub use parse::{MAX_ERRORS, MAX_NESTING, parse};
-pub use program::{Program, STAR_LIMIT, ThresholdError};
+pub use program::{Holding, Program, STAR_LIMIT, ThresholdError};
 pub use tree::{PlanError, PlanReport};
 pub use warning::{Setting, Warning, warnings};
 

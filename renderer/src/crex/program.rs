@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::ast::{Ast, Atom, Group, Item, Repeat, Span};
 use crate::component::{Component, ComponentSet};
-use crate::work::GroupId;
+use crate::work::{GroupId, Stage};
 
 /// Runs of a `*`'s body after which it stops with a warning.
 pub const STAR_LIMIT: u32 = 1_000_000;
@@ -40,8 +40,25 @@ pub(super) struct Letter {
     pub(super) span: Span,
     /// Which threshold, counted over all `{ }` from the left.
     pub(super) threshold: Option<u32>,
-    pub(super) held: bool,
+    /// The outermost group around it that holds what is spawned.
+    pub(super) hold: Option<Hold>,
     pub(super) group: Option<GroupId>,
+}
+
+/// An outermost `< >` or `[ ]`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hold {
+    /// Which one, counted over the text.
+    number: u32,
+    /// Repeats around it.
+    repeats: usize,
+}
+
+/// One run of an outermost `< >` or `[ ]`: stages of equal holding ran in the same one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Holding<'k> {
+    number: u32,
+    iterations: &'k [u32],
 }
 
 /// An outermost `[ ]`.
@@ -83,8 +100,8 @@ impl Program {
             thresholds: Vec::new(),
             repeat_depth: 0,
         };
-        let mut lowering = Lowering { program, repeats: 0 };
-        lowering.items(ast.items(), Place { threshold: None, held: false, group: None });
+        let mut lowering = Lowering { program, repeats: 0, holds: 0 };
+        lowering.items(ast.items(), Place { threshold: None, hold: None, group: None });
         lowering.program
     }
 
@@ -125,6 +142,14 @@ impl Program {
     #[must_use]
     pub fn group_count(&self) -> usize {
         self.groups.len()
+    }
+
+    /// Which run of which outermost `< >` or `[ ]` a stage of this program belongs to, if to any.
+    #[must_use]
+    pub fn holding<'k>(&self, stage: &'k Stage) -> Option<Holding<'k>> {
+        let place = self.letters.binary_search_by_key(&stage.span.0, |letter| letter.span.start).ok()?;
+        let Hold { number, repeats } = self.letters[place].hold?;
+        Some(Holding { number, iterations: stage.key.words().get(..2 * repeats)? })
     }
 
     /// The text of an outermost `[ ]`, with its brackets, as it was written. Panics for a group of another program.
@@ -173,7 +198,7 @@ pub enum ThresholdError {
 #[derive(Clone, Copy)]
 struct Place {
     threshold: Option<u32>,
-    held: bool,
+    hold: Option<Hold>,
     group: Option<GroupId>,
 }
 
@@ -181,6 +206,8 @@ struct Lowering {
     program: Program,
     /// Repeats open.
     repeats: usize,
+    /// Outermost `< >` and `[ ]` so far.
+    holds: u32,
 }
 
 impl Lowering {
@@ -217,9 +244,9 @@ impl Lowering {
     fn atom(&mut self, item: &Item, place: Place) -> u64 {
         match item.atom() {
             &Atom::Component(component) => {
-                let Place { threshold, held, group } = place;
+                let Place { threshold, hold, group } = place;
                 let number = index(self.program.letters.len());
-                self.program.letters.push(Letter { component, span: item.atom_span(), threshold, held, group });
+                self.program.letters.push(Letter { component, span: item.atom_span(), threshold, hold, group });
                 self.push(Op::Run(number));
                 1
             }
@@ -241,17 +268,20 @@ impl Lowering {
 
     /// Only the outermost group that holds releases.
     fn holding(&mut self, items: &[Item], place: Place) -> u64 {
-        let stages = self.items(items, Place { held: true, ..place });
-        if !place.held {
-            self.push(Op::Release);
+        if place.hold.is_some() {
+            return self.items(items, place);
         }
+        let hold = Hold { number: self.holds, repeats: self.repeats };
+        self.holds += 1;
+        let stages = self.items(items, Place { hold: Some(hold), ..place });
+        self.push(Op::Release);
         stages
     }
 
     /// Only the outermost `[ ]` is a task.
     fn timed(&mut self, items: &[Item], span: Span, place: Place) -> u64 {
         if place.group.is_some() {
-            return self.holding(items, place);
+            return self.items(items, place);
         }
         let id = GroupId(index(self.program.groups.len()));
         let threshold = place.threshold;

@@ -9,8 +9,27 @@ use crate::work::{Stage, StageKey, WorkReport};
 pub struct StageRow {
     /// Which stage.
     pub stage: Stage,
-    /// What it did.
+    /// What it did; nothing if it was skipped.
     pub report: WorkReport,
+    /// Seconds that its task was predicted to take, under a time limit.
+    pub predicted_s: Option<f64>,
+    /// Why it did not run.
+    pub skipped: Option<Skipped>,
+}
+
+/// Why a stage did not run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Skipped {
+    /// Its task was not predicted to end in the time left.
+    Time,
+}
+
+impl StageRow {
+    /// The row of a stage that ran without a prediction.
+    #[must_use]
+    pub fn ran(stage: Stage, report: WorkReport) -> Self {
+        Self { stage, report, predicted_s: None, skipped: None }
+    }
 }
 
 /// The rows of one execution over the whole picture, from those of the tiles that each ran the same program by itself:

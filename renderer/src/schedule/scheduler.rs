@@ -46,7 +46,7 @@ impl<'p> Scheduler<'p> {
     pub fn report(&mut self, report: &WorkReport) {
         self.cursor.report(report.rays);
         if let Some(stage) = self.running.take() {
-            self.rows.push(StageRow { stage, report: *report });
+            self.rows.push(StageRow::ran(stage, *report));
         }
     }
 
@@ -57,6 +57,12 @@ impl<'p> Scheduler<'p> {
     }
 
     /// The rows of all stages reported so far, in the order in which they ran.
+    #[must_use]
+    pub fn rows(&self) -> &[StageRow] {
+        &self.rows
+    }
+
+    /// The same, to keep.
     #[must_use]
     pub fn into_rows(self) -> Vec<StageRow> {
         self.rows

@@ -99,13 +99,18 @@ proptest! {
         };
         stage.sequence(&items);
 
-        let execution = execute(&program, None, &scene, pixels);
+        let execution = execute(&program, None, &scene, pixels.clone());
         let rows: Vec<_> =
             execution.rows.iter().map(|row| (row.stage.component.letter(), row.report.rays as usize)).collect();
         prop_assert_eq!(rows, stage.rows, "{}", crex);
         prop_assert_eq!(&execution.traced, &stage.traced, "{}", crex);
         let left: u64 = execution.left.iter().map(|(_, count)| count).sum();
         prop_assert_eq!(left as usize, stage.seen.len(), "{}", crex);
+
+        let executed = renderer::schedule::executed(&program, &execution.rows);
+        let short = compile(&executed.crex).map_err(|_| TestCaseError::fail(executed.crex.clone()))?;
+        let again = execute(&short, Some(&executed.thresholds), &scene, pixels);
+        prop_assert_eq!(again.traced, execution.traced, "{} for {}", executed.crex, crex);
     }
 
     /// The order inside `< >` changes no ray and no count.

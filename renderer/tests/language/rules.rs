@@ -268,3 +268,20 @@ fn a_deep_run_of_real_rays_is_never_cut() {
     assert_eq!(run("T2500", &deep).rows.len(), 2500);
     assert_eq!(run("(T50)50", &deep).traced.len(), 2500);
 }
+
+#[test]
+fn the_crex_that_an_execution_amounts_to_is_named() {
+    let scene = Scene::each(2);
+    for (crex, amounts_to) in [
+        ("(TT[RS]G)*D", "T2<RS>GT<RS>GD"),
+        ("(<MRSGD>T*)*", "<MRSGD>T2<MRSGD>"),
+        ("T*", "T2"),
+        ("<TT>3", "<T><T>"),
+        ("T{RS2}", "T{R}{S2}"),
+        ("", ""),
+    ] {
+        let program = compile(crex).expect("a crex");
+        let executed = renderer::schedule::executed(&program, &run(crex, &scene).rows);
+        assert_eq!(executed.crex, amounts_to, "{crex}");
+    }
+}
