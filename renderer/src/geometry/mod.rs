@@ -7,3 +7,6 @@ pub mod shape;
 pub use aggregate::{Aggregate, Item, Passage, Shadow};
 pub use hit::{Hit, Ray, SurfaceId};
 pub use shape::Shape;
+
+#[cfg(test)]
+mod tests;

@@ -81,7 +81,7 @@ mod tests {
         // Disc: E x = 0, E x^2 = 1/4. Hemisphere by cosine: E z = 2/3, E z^2 = 1/2. Sphere: E z = 0, E z^2 = 1/3.
         assert!(mean(64, |u| disc(u).x).abs() < 1e-3);
         assert!((mean(64, |u| disc(u).x.powi(2)) - 0.25).abs() < 1e-3);
-        assert!((mean(64, |u| cosine_hemisphere(u).z) - 2.0 / 3.0).abs() < 1e-3);
+        assert!((mean(512, |u| cosine_hemisphere(u).z) - 2.0 / 3.0).abs() < 1e-3);
         assert!((mean(64, |u| cosine_hemisphere(u).z.powi(2)) - 0.5).abs() < 1e-3);
         assert!(mean(64, |u| sphere(u).z).abs() < 1e-3);
         assert!((mean(64, |u| sphere(u).z.powi(2)) - 1.0 / 3.0).abs() < 1e-3);

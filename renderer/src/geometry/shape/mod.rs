@@ -123,3 +123,6 @@ impl Shape {
 fn within(t: f64, t_min: f64, t_max: f64) -> Option<f64> {
     (t > t_min && t < t_max).then_some(t)
 }
+
+#[cfg(test)]
+mod tests;

@@ -62,7 +62,11 @@ impl Sphere {
     }
 
     pub(super) fn settle(&self, point: DVec3) -> (DVec3, DVec3) {
-        let outward = (point - self.centre).try_normalize().unwrap_or(DVec3::Z);
+        let from_centre = point - self.centre;
+        // Divided, not multiplied by a reciprocal: the normal of a point on an axis is that axis.
+        let length = from_centre.length();
+        // A sphere smaller than the last digit of its coordinates has no better normal.
+        let outward = if length > 0.0 { from_centre / length } else { DVec3::Z };
         (self.centre + outward * self.radius(), outward * self.radius.signum())
     }
 
