@@ -3,6 +3,7 @@
 pub mod color;
 pub mod component;
 pub mod crex;
+pub mod film;
 pub mod geometry;
 pub mod importance;
 pub mod material;
@@ -10,6 +11,7 @@ pub mod math;
 pub mod picture;
 pub mod rad;
 pub mod raster;
+pub mod sample;
 pub mod scene;
 pub mod schedule;
 pub mod work;

@@ -128,3 +128,6 @@ impl Material {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,224 @@
+//! The image planes: light that primary rays met, a layer for each component, and the ambient estimate.
+
+use glam::{DVec3, Vec3};
+
+use crate::color::Rgb;
+use crate::component::{Component, ComponentSet, PerComponent};
+use crate::raster::Raster;
+
+/// Under which component light is filed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layers {
+    /// The event that spawned the ray which brought it.
+    #[default]
+    Last,
+    /// The first event of its path from the eye.
+    First,
+}
+
+/// A place on the film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// What primary rays brought.
+    Direct,
+    /// What a component's rays brought.
+    Layer(Component),
+    /// The estimate of the diffuse light that was not traced (`-av`).
+    Ambient,
+}
+
+/// Sums of radiance over the samples of some pixels, in double precision: what one parcel of rays adds to.
+#[derive(Clone, Debug, Default)]
+pub struct Planes {
+    pixels: usize,
+    direct: Vec<Rgb>,
+    layers: PerComponent<Vec<Rgb>>,
+    ambient: Vec<Rgb>,
+}
+
+impl Planes {
+    /// Makes all planes black, with room for `pixels`; only the layers of `components`, and the ambient plane if it is `ambient`, can
+    /// be added to afterwards. Allocates only if they grow.
+    pub fn clear(&mut self, pixels: usize, components: ComponentSet, ambient: bool) {
+        self.pixels = pixels;
+        let reset = |plane: &mut Vec<Rgb>, present: bool| {
+            plane.clear();
+            plane.resize(if present { pixels } else { 0 }, Rgb::ZERO);
+        };
+        reset(&mut self.direct, true);
+        for (component, plane) in self.layers.iter_mut() {
+            reset(plane, components.contains(component));
+        }
+        reset(&mut self.ambient, ambient);
+    }
+
+    /// Adds radiance at a pixel.
+    pub fn add(&mut self, pixel: u32, plane: Plane, radiance: Rgb) {
+        let plane = match plane {
+            Plane::Direct => &mut self.direct,
+            Plane::Layer(component) => &mut self.layers[component],
+            Plane::Ambient => &mut self.ambient,
+        };
+        plane[pixel as usize] += radiance;
+    }
+
+    /// Adds the sums of another set of planes, pixel by pixel; both must have been cleared alike.
+    pub fn add_all(&mut self, other: &Self) {
+        let add = |sums: &mut Vec<Rgb>, terms: &[Rgb]| sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += *term);
+        add(&mut self.direct, &other.direct);
+        for (component, plane) in self.layers.iter_mut() {
+            add(plane, &other.layers[component]);
+        }
+        add(&mut self.ambient, &other.ambient);
+    }
+}
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// First column.
+    pub x: usize,
+    /// First row, from the top.
+    pub y: usize,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+impl Block {
+    /// Number of pixels.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.width * self.height
+    }
+}
+
+/// A finished picture in its layers. Picture = direct + layers + ambient.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    direct: Raster<Vec3>,
+    layers: PerComponent<Option<Raster<Vec3>>>,
+    ambient: Option<Raster<Vec3>>,
+}
+
+impl Film {
+    /// A black film with layers for `components`, and an ambient plane if it is `ambient`.
+    #[must_use]
+    pub fn new(width: usize, height: usize, components: ComponentSet, ambient: bool) -> Self {
+        let plane = || Raster::filled(width, height, Vec3::ZERO);
+        Self {
+            direct: plane(),
+            layers: PerComponent::from_fn(|component| components.contains(component).then(plane)),
+            ambient: ambient.then(plane),
+        }
+    }
+
+    /// Pixels in a row.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.direct.width()
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.direct.height()
+    }
+
+    /// What primary rays brought: radiance, W/(sr m2).
+    #[must_use]
+    pub fn direct(&self) -> &Raster<Vec3> {
+        &self.direct
+    }
+
+    /// What a component's rays brought; `None` counts as black.
+    #[must_use]
+    pub fn layer(&self, component: Component) -> Option<&Raster<Vec3>> {
+        self.layers[component].as_ref()
+    }
+
+    /// The ambient estimate of diffuse light that was not traced; `None` counts as black.
+    #[must_use]
+    pub fn ambient(&self) -> Option<&Raster<Vec3>> {
+        self.ambient.as_ref()
+    }
+
+    /// Removes the layers of all components that are not in `reached`.
+    pub fn keep(&mut self, reached: ComponentSet) {
+        for (component, layer) in self.layers.iter_mut() {
+            if !reached.contains(component) {
+                *layer = None;
+            }
+        }
+    }
+
+    /// Stores sums over `samples` samples as means, in a block of the picture.
+    pub(crate) fn store(&mut self, block: Block, sums: &Planes, samples: u32) {
+        let scale = 1.0 / f64::from(samples);
+        let copy = |plane: &mut Raster<Vec3>, sums: &[Rgb]| {
+            let stride = plane.width();
+            for (row, sums) in sums.chunks_exact(block.width).enumerate() {
+                let start = (block.y + row) * stride + block.x;
+                let pixels = &mut plane.values_mut()[start..start + block.width];
+                pixels.iter_mut().zip(sums).for_each(|(pixel, sum)| *pixel = (*sum * scale).as_vec3());
+            }
+        };
+        copy(&mut self.direct, &sums.direct);
+        for (component, layer) in self.layers.iter_mut() {
+            if let Some(layer) = layer {
+                copy(layer, &sums.layers[component]);
+            }
+        }
+        if let Some(ambient) = &mut self.ambient {
+            copy(ambient, &sums.ambient);
+        }
+    }
+
+    /// Direct light, the ambient estimate and the layers of `components`, added up.
+    #[must_use]
+    pub fn develop(&self, components: ComponentSet) -> Raster<Vec3> {
+        let mut sums: Vec<DVec3> = self.direct.values().iter().map(|pixel| pixel.as_dvec3()).collect();
+        let layers = components.iter().filter_map(|component| self.layers[component].as_ref());
+        for plane in layers.chain(&self.ambient) {
+            sums.iter_mut().zip(plane.values()).for_each(|(sum, pixel)| *sum += pixel.as_dvec3());
+        }
+        let pixels = sums.into_iter().map(|sum| sum.as_vec3()).collect();
+        Raster::from_values(self.width(), self.height(), pixels).expect("as many pixels as the direct plane")
+    }
+
+    /// The whole picture.
+    #[must_use]
+    pub fn beauty(&self) -> Raster<Vec3> {
+        self.develop(ComponentSet::ALL)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_land_in_their_place_as_means_and_layers_add_up() {
+        let components = ComponentSet::EMPTY.with(Component::Diffuse).with(Component::Mirror);
+        let mut sums = Planes::default();
+        sums.clear(4, components, true);
+        let mut more = sums.clone();
+        more.add(3, Plane::Direct, Rgb::splat(8.0));
+        more.add(3, Plane::Layer(Component::Diffuse), Rgb::new(4.0, 0.0, 0.0));
+        more.add(0, Plane::Layer(Component::Mirror), Rgb::splat(2.0));
+        more.add(3, Plane::Ambient, Rgb::splat(1.0));
+        sums.add_all(&more);
+        sums.add_all(&more);
+        let mut film = Film::new(5, 4, components, true);
+        film.store(Block { x: 1, y: 2, width: 2, height: 2 }, &sums, 2);
+        assert_eq!(*film.direct().at(2, 3), Vec3::splat(8.0));
+        assert_eq!(*film.beauty().at(2, 3), Vec3::new(13.0, 9.0, 9.0));
+        assert_eq!(*film.develop(ComponentSet::EMPTY).at(2, 3), Vec3::splat(9.0));
+        assert_eq!(*film.beauty().at(1, 2), Vec3::splat(2.0));
+        assert_eq!(film.beauty().values().iter().filter(|pixel| **pixel != Vec3::ZERO).count(), 2);
+        assert!(film.layer(Component::Glossy).is_none());
+        film.keep(ComponentSet::EMPTY.with(Component::Mirror));
+        assert_eq!(*film.beauty().at(2, 3), Vec3::splat(9.0));
+    }
+}
