@@ -9,6 +9,7 @@ mod view;
 
 use glam::DVec3;
 
+use crate::component::ComponentSet;
 use crate::geometry::{Aggregate, Item, Passage, Shape, SurfaceId};
 use crate::material::{Alternate, EmitterKind, Interaction, Material, MaterialId};
 use crate::rad;
@@ -65,6 +66,12 @@ impl Scene {
     #[must_use]
     pub fn name(&self, id: NameId) -> &str {
         self.names.text(id)
+    }
+
+    /// The components that the scene's materials can spawn when rpict's `-st` is `threshold`.
+    #[must_use]
+    pub fn components(&self, threshold: f64) -> ComponentSet {
+        self.materials.iter().fold(ComponentSet::EMPTY, |set, material| set.union(material.components(threshold)))
     }
 
     /// Builds the hierarchy of all visible surfaces.

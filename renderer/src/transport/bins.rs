@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::color::Rgb;
-use crate::component::{Component, PerComponent};
+use crate::component::{Component, ComponentSet, PerComponent};
 use crate::geometry::SurfaceId;
 use crate::material::Spread;
 use crate::work::BinOccupancy;
@@ -41,18 +41,36 @@ struct RayBin {
 #[derive(Clone, Debug, Default)]
 pub struct RayBins {
     bins: PerComponent<RayBin>,
+    /// Components that have a bin.
+    stored: ComponentSet,
+    /// Rays of the others, which nothing will run.
+    dropped: PerComponent<u64>,
     /// Room for the records of a bin while it runs.
     spare: Vec<SpawnRecord>,
 }
 
 impl RayBins {
-    /// Empties all bins; their memory is kept for the next use.
-    pub fn clear(&mut self) {
+    /// Empties all bins, keeping their memory, and gives bins to the components in `stored` only: rays of the others, which nothing
+    /// will run, are merely counted.
+    pub fn clear(&mut self, stored: ComponentSet) {
+        self.stored = stored;
+        self.dropped = PerComponent::default();
         for (_, bin) in self.bins.iter_mut() {
             bin.visible.clear();
             bin.held.clear();
             (bin.visible_rays, bin.held_rays) = (0, 0);
         }
+    }
+
+    /// Whether a component has a bin.
+    #[must_use]
+    pub fn stores(&self, component: Component) -> bool {
+        self.stored.contains(component)
+    }
+
+    /// Counts rays of a component without a bin.
+    pub fn count_dropped(&mut self, component: Component, rays: u32) {
+        self.dropped[component] += u64::from(rays);
     }
 
     /// Puts a record into a component's bin: `held` ones stay hidden until [`Self::release`].
@@ -97,10 +115,13 @@ impl RayBins {
         PerComponent::from_fn(|component| self.bins[component].visible_rays)
     }
 
-    /// All rays that wait, held ones included, by component.
+    /// All rays that were spawned and not taken, held ones and those without a bin included, by component.
     #[must_use]
     pub fn left(&self) -> PerComponent<u64> {
-        PerComponent::from_fn(|component| self.bins[component].visible_rays + self.bins[component].held_rays)
+        PerComponent::from_fn(|component| {
+            let bin = &self.bins[component];
+            bin.visible_rays + bin.held_rays + self.dropped[component]
+        })
     }
 
     /// The records that wait in a component's bin, held ones included.

@@ -134,9 +134,13 @@ impl Spawner<'_> {
             }
         }
         if refused {
-            if component == Component::Diffuse && self.ambient != Rgb::ZERO {
-                self.planes.add(parent.pixel, Plane::Ambient, ripple * self.ambient);
-            }
+            self.estimate(component, parent.pixel, ripple);
+            return;
+        }
+        self.spawned[component] += u64::from(count);
+        if !self.bins.stores(component) {
+            self.estimate(component, parent.pixel, ripple);
+            self.bins.count_dropped(component, count);
             return;
         }
 
@@ -165,6 +169,12 @@ impl Spawner<'_> {
             path,
         };
         self.bins.push(component, record, self.held);
-        self.spawned[component] += u64::from(count);
+    }
+
+    /// Lets the ambient value stand for diffuse rays that will not be traced.
+    fn estimate(&mut self, component: Component, pixel: u32, ripple: Rgb) {
+        if component == Component::Diffuse && self.ambient != Rgb::ZERO {
+            self.planes.add(pixel, Plane::Ambient, ripple * self.ambient);
+        }
     }
 }

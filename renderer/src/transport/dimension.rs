@@ -1,0 +1,13 @@
+//! The dimensions of the random numbers of a ray and its hit: every use has its own, so that none is used twice.
+
+/// The place of a primary ray in its pixel.
+pub(super) const PIXEL: u32 = 0;
+
+/// The direction of a spawned ray; trial number i, after directions below the surface, takes the i-th from here.
+pub(super) const DIRECTION: u32 = 1;
+
+/// Russian roulette for the lobe of each step of a path (`PathKey::then`).
+pub(super) const ROULETTE: u32 = 32;
+
+/// The point on light number i, the i-th from here.
+pub(super) const LIGHT: u32 = 64;

@@ -1,0 +1,186 @@
+//! Direct light at a hit: one point of each light, and what is left of its radiance on the way.
+
+use glam::Vec3;
+
+use crate::color::Rgb;
+use crate::geometry::{Aggregate, Hit, Ray, Shadow, SurfaceId};
+use crate::material::{Alternate, EmitterKind, Interaction, Material, Response};
+use crate::sample::Sampler;
+use crate::scene::{Leg, Light, Scene, SourceId};
+
+use super::dimension;
+use super::ray::transmittance;
+
+/// Vectors that shadow rays need, kept so that a hit allocates nothing.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    crossings: Vec<Hit>,
+    legs: Vec<Leg>,
+}
+
+/// Crossings of refracting surfaces after which a shadow ray is given up. Rays that are only refracted leave a solid after a few;
+/// no light is lost by this but in rings of lenses.
+const MOST_CROSSINGS: usize = 256;
+
+/// Coefficient below which a refracted shadow ray is given up, as in rpict.
+const LEAST_COEFFICIENT: f64 = 1e-6;
+
+/// Where direct light is asked for.
+pub(super) struct Lit<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) aggregate: &'a Aggregate,
+    /// Starts at the hit and names its surface; direction and end do not count.
+    pub(super) start: Ray,
+    /// Extinction of the medium around the hit.
+    pub(super) extinction: Vec3,
+}
+
+impl Lit<'_> {
+    /// Radiance that a surface sends back along the ray, of the light that all sources send it.
+    pub(super) fn light(&self, response: &Response, sampler: &Sampler, scratch: &mut Scratch) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for (light, dimension) in self.scene.lights.iter().zip(dimension::LIGHT..) {
+            let Some(sample) = light.sample(self.start.origin, sampler.pair(dimension)) else { continue };
+            let unshadowed = response.direct(sample.dir, sample.solid_angle) * sample.radiance;
+            if unshadowed == Rgb::ZERO {
+                continue;
+            }
+            let start = Ray { dir: sample.dir, t_max: sample.distance, ..self.start };
+            let visible = if light.relay().is_empty() {
+                let target = match light.source() {
+                    SourceId::Surface(surface) => Some(surface),
+                    SourceId::Far(_) => None,
+                };
+                let leg = Leg { ray: start, target, mirror: None };
+                self.visible(light, &start, std::slice::from_ref(&leg), &mut scratch.crossings)
+            } else {
+                if !light.legs(self.scene, start, &sample, &mut scratch.legs) {
+                    continue;
+                }
+                self.visible(light, &start, &scratch.legs, &mut scratch.crossings)
+            };
+            sum += unshadowed * visible;
+        }
+        sum
+    }
+
+    /// The fraction of a light's radiance that is left at the hit, which sees it along `legs`.
+    fn visible(&self, light: &Light, start: &Ray, legs: &[Leg], crossings: &mut Vec<Hit>) -> Rgb {
+        let mut fraction = Rgb::ONE;
+        for leg in legs {
+            match self.aggregate.shadow(&leg.ray, leg.target, crossings) {
+                Shadow::Blocked => return Rgb::ZERO,
+                Shadow::Refracted => return self.refracted(light, *start),
+                Shadow::Clear => {}
+            }
+            for hit in crossings.iter() {
+                match self.straight(light, hit, &leg.ray) {
+                    Some(passed) => fraction *= passed,
+                    None => return Rgb::ZERO,
+                }
+            }
+            if let Some(mirror) = &leg.mirror {
+                fraction *= self.mirrored(mirror.surface);
+            }
+        }
+        if self.extinction != Vec3::ZERO {
+            // Nothing bent the ray, so it did not leave the medium that the hit lies in.
+            fraction *= transmittance(self.extinction, legs.iter().map(|leg| leg.ray.t_max).sum());
+        }
+        fraction
+    }
+
+    /// The fraction that a surface lets through without bending the ray; `None` if it stops it.
+    fn straight(&self, light: &Light, hit: &Hit, ray: &Ray) -> Option<Rgb> {
+        let mut material = self.scene.material(hit.surface)?;
+        loop {
+            let interaction = || Interaction::new(ray.dir, hit.normal);
+            let passed = match material {
+                Material::Trans(trans) => trans.shadow(&interaction()),
+                Material::Glass(glass) => glass.shadow(&interaction()),
+                Material::Emitter(emitter) => {
+                    let EmitterKind::Illum(alternate) = emitter.kind() else { return None };
+                    // An illum already holds the light of the illums and glows behind it.
+                    let held = matches!(light.emitter().kind(), EmitterKind::Illum(_) | EmitterKind::Glow { .. });
+                    if held && hit.is_front(ray.dir) {
+                        return None;
+                    }
+                    match alternate {
+                        Alternate::None | Alternate::Void => Rgb::ONE,
+                        // An alternate is defined before what names it, so this comes to an end.
+                        Alternate::Material(id) => {
+                            material = &self.scene.materials[id.index()];
+                            continue;
+                        }
+                    }
+                }
+                Material::Plastic(_) | Material::Metal(_) | Material::Dielectric(_) | Material::Mirror(_) => {
+                    return None;
+                }
+            };
+            return (passed != Rgb::ZERO).then_some(passed);
+        }
+    }
+
+    /// What a mirror leaves of the light that it relays.
+    fn mirrored(&self, surface: SurfaceId) -> Rgb {
+        match self.scene.material(surface) {
+            Some(Material::Mirror(mirror)) => mirror.reflectance(),
+            _ => Rgb::ZERO,
+        }
+    }
+
+    /// The fraction of a light's radiance that arrives by a ray which refracting solids bend: it counts if it comes to the light after
+    /// all, over the mirrors that relay it.
+    fn refracted(&self, light: &Light, start: Ray) -> Rgb {
+        let mut ray = Ray { t_max: f64::INFINITY, ..start };
+        let mut extinction = self.extinction;
+        let mut fraction = Rgb::ONE;
+        let mut mirrors = light.relay().iter();
+        let mut next = mirrors.next();
+        for _ in 0..MOST_CROSSINGS {
+            let Some(hit) = self.aggregate.closest(&ray) else {
+                let arrives = match light.source() {
+                    SourceId::Far(far) => self.scene.far[far.index()].contains(ray.dir),
+                    SourceId::Surface(_) => false,
+                };
+                let weakened = fraction * transmittance(extinction, f64::INFINITY);
+                return if arrives && next.is_none() { weakened } else { Rgb::ZERO };
+            };
+            let front = hit.is_front(ray.dir);
+            let material = self.scene.material(hit.surface);
+            if let (Some(Material::Dielectric(dielectric)), false) = (material, front) {
+                extinction = dielectric.extinction().as_vec3();
+            }
+            fraction *= transmittance(extinction, hit.t);
+            let mut dir = ray.dir;
+            if next == Some(&hit.surface) {
+                if !front {
+                    return Rgb::ZERO;
+                }
+                fraction *= self.mirrored(hit.surface);
+                dir = Interaction::new(ray.dir, hit.normal).reflected();
+                next = mirrors.next();
+            } else if next.is_none() && light.source() == SourceId::Surface(hit.surface) {
+                return if front { fraction } else { Rgb::ZERO };
+            } else if let Some(Material::Dielectric(dielectric)) = material {
+                let Some((bent, coefficient, beyond)) = dielectric.shadow(&Interaction::new(ray.dir, hit.normal))
+                else {
+                    return Rgb::ZERO;
+                };
+                (dir, extinction) = (bent, beyond.as_vec3());
+                fraction *= coefficient;
+            } else {
+                match self.straight(light, &hit, &ray) {
+                    Some(passed) => fraction *= passed,
+                    None => return Rgb::ZERO,
+                }
+            }
+            if fraction.max_element() < LEAST_COEFFICIENT {
+                return Rgb::ZERO;
+            }
+            ray = Ray::new(hit.point, dir).leaving(hit.surface);
+        }
+        Rgb::ZERO
+    }
+}

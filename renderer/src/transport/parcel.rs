@@ -1,0 +1,178 @@
+//! A parcel: a block of pixels and a range of samples that are traced together.
+
+use std::ops::Range;
+
+use crate::color::Rgb;
+use crate::component::{Component, ComponentSet, PerComponent};
+use crate::film::{Block, Plane, Planes};
+use crate::geometry::Ray;
+use crate::raster::Raster;
+use crate::sample::{PathKey, Sampler};
+use crate::scene::View;
+use crate::work::{BinOccupancy, Stage, WorkReport};
+
+use super::bins::RayBins;
+use super::dimension;
+use super::direct::Scratch;
+use super::ray::{PathRay, RayPath};
+use super::spawn::Spawner;
+use super::trace::Tracer;
+
+/// Where the primary rays of a picture come from.
+#[derive(Clone, Copy, Debug)]
+pub struct Samples<'a> {
+    /// The view.
+    pub view: &'a View,
+    /// Pixels in a row of the whole picture.
+    pub width: usize,
+    /// Rows of the whole picture.
+    pub height: usize,
+    /// `-pj`: how much of a pixel's extent its samples cover, in [0,1]; 1 is a box filter, 0 samples the centre.
+    pub jitter: f64,
+}
+
+/// Pixels and samples with the rays that they have brought forth so far.
+#[derive(Clone, Debug)]
+pub struct Parcel {
+    block: Block,
+    numbers: Range<u32>,
+    bins: RayBins,
+    planes: Planes,
+}
+
+/// Memory that tracing needs beside a parcel; one for each thread.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace {
+    scratch: Scratch,
+}
+
+impl Parcel {
+    /// A parcel of the samples `numbers` of a block's pixels, whose spawned rays are kept for the components in `stored`.
+    #[must_use]
+    pub fn new(block: Block, numbers: Range<u32>, stored: ComponentSet, ambient: bool) -> Self {
+        let mut parcel = Self { block, numbers: 0..0, bins: RayBins::default(), planes: Planes::default() };
+        parcel.restart(block, numbers, stored, ambient);
+        parcel
+    }
+
+    /// As [`Self::new`], with the memory of this parcel.
+    pub fn restart(&mut self, block: Block, numbers: Range<u32>, stored: ComponentSet, ambient: bool) {
+        self.block = block;
+        self.numbers = numbers;
+        self.bins.clear(stored);
+        self.planes.clear(block.pixels(), stored, ambient);
+    }
+
+    /// Traces the primary rays.
+    pub fn trace_primary(
+        &mut self,
+        tracer: &Tracer<'_>,
+        samples: &Samples<'_>,
+        workspace: &mut Workspace,
+    ) -> WorkReport {
+        let mut rays = 0;
+        let mut spawner = spawner(tracer, &mut self.bins, &mut self.planes, false);
+        for pixel in 0..self.block.pixels() {
+            let (x, y) = place(&self.block, pixel);
+            for sample in self.numbers.clone() {
+                let sampler = Sampler::new(tracer.seed, name(x, y), PathKey::EYE, sample);
+                let [across, down] = sampler.pair(dimension::PIXEL).map(|u| 0.5 + samples.jitter * (u - 0.5));
+                let ray = samples
+                    .view
+                    .ray((x as f64 + across) / samples.width as f64, (y as f64 + down) / samples.height as f64);
+                let Some(ray) = ray else { continue };
+                rays += 1;
+                let ray = PathRay { ray, ripple: Rgb::ONE, path: RayPath::primary(pixel as u32, sample) };
+                tracer.trace(&ray, &sampler, &mut workspace.scratch, &mut spawner);
+            }
+        }
+        WorkReport { rays, spawned: spawner.spawned, seconds: 0.0 }
+    }
+
+    /// Traces the visible rays of a component's bin: all, or if the stage has a threshold those of pixels whose `importance` (a map of
+    /// the whole picture; everywhere 1 if there is none) reaches it. The others stay visible.
+    pub fn run(
+        &mut self,
+        tracer: &Tracer<'_>,
+        stage: &Stage,
+        importance: Option<&Raster<f32>>,
+        workspace: &mut Workspace,
+    ) -> WorkReport {
+        let mut records = self.bins.take(stage.component);
+        let mut rays = 0;
+        let mut spawned = PerComponent::default();
+        let glossy = tracer.limits.glossy_sampling();
+        for record in records.drain(..) {
+            let (x, y) = place(&self.block, record.path.pixel as usize);
+            let reached = match (stage.threshold, importance) {
+                (Some(threshold), Some(map)) => *map.at(x, y) >= threshold,
+                // Without a map every pixel counts as 1, and no threshold exceeds that.
+                _ => true,
+            };
+            if !reached {
+                self.bins.push(stage.component, record, false);
+                continue;
+            }
+            let mut spawner = Spawner { spawned, ..spawner(tracer, &mut self.bins, &mut self.planes, stage.held) };
+            for i in 0..record.count {
+                let sample = record.path.sample.wrapping_mul(record.count).wrapping_add(i);
+                let sampler = Sampler::new(tracer.seed, name(x, y), record.path.key, sample);
+                let drawn = record.spread.direction(glossy, |trial| sampler.pair(dimension::DIRECTION + trial));
+                rays += 1;
+                let Some((dir, weight)) = drawn else { continue };
+                let ray = PathRay {
+                    ray: Ray::new(record.origin, dir).leaving(record.leaving),
+                    ripple: record.ripple * weight,
+                    path: RayPath { sample, ..record.path },
+                };
+                tracer.trace(&ray, &sampler, &mut workspace.scratch, &mut spawner);
+            }
+            spawned = spawner.spawned;
+        }
+        self.bins.give_back(records);
+        WorkReport { rays, spawned, seconds: 0.0 }
+    }
+
+    /// Makes all held rays visible.
+    pub fn release(&mut self) {
+        self.bins.release();
+    }
+
+    /// Rays now visible, by component.
+    #[must_use]
+    pub fn occupancy(&self) -> BinOccupancy {
+        self.bins.occupancy()
+    }
+
+    /// All rays that have been spawned and not traced, by component.
+    #[must_use]
+    pub fn left(&self) -> PerComponent<u64> {
+        self.bins.left()
+    }
+
+    /// Adds what the parcel has brought so far to `sums`: its planes, and the ambient estimate of the diffuse rays that still wait.
+    pub fn add_to(&self, sums: &mut Planes, ambient: Rgb) {
+        sums.add_all(&self.planes);
+        if ambient != Rgb::ZERO {
+            for record in self.bins.waiting(Component::Diffuse) {
+                let estimate = record.ripple * f64::from(record.count) * ambient;
+                sums.add(record.path.pixel, Plane::Ambient, estimate);
+            }
+        }
+    }
+}
+
+fn spawner<'a>(tracer: &'a Tracer<'_>, bins: &'a mut RayBins, planes: &'a mut Planes, held: bool) -> Spawner<'a> {
+    let (limits, ambient) = (&tracer.limits, tracer.ambient);
+    Spawner { limits, ambient, bins, planes, held, spawned: PerComponent::default() }
+}
+
+/// Column and row in the picture of a block's pixel.
+fn place(block: &Block, pixel: usize) -> (usize, usize) {
+    (block.x + pixel % block.width, block.y + pixel / block.width)
+}
+
+/// A pixel as random numbers know it: the same in pictures of any width.
+fn name(x: usize, y: usize) -> u64 {
+    (y as u64) << 32 | x as u64
+}

@@ -1,0 +1,186 @@
+//! One ray: what it meets, what that sends back at once, and what it spawns.
+
+use crate::color::Rgb;
+use crate::film::Layers;
+use crate::geometry::{Aggregate, Hit, Ray};
+use crate::material::{Alternate, EmitterKind, Interaction, Material};
+use crate::sample::Sampler;
+use crate::scene::Scene;
+
+use super::direct::{Lit, Scratch};
+use super::ray::{PathRay, transmittance};
+use super::spawn::{Departure, Limits, Spawner};
+
+/// Extinction times length from which on absorption lowers a ray's weight (rpict).
+const WEIGHTY_ABSORPTION: f64 = 0.1;
+
+/// Everything that the tracing of a ray depends on but the ray.
+pub struct Tracer<'a> {
+    /// What there is.
+    pub scene: &'a Scene,
+    /// Its shapes.
+    pub aggregate: &'a Aggregate,
+    /// Where paths end.
+    pub limits: Limits,
+    /// `-av`: radiance that stands for diffuse light that is not traced, W/(sr m2).
+    pub ambient: Rgb,
+    /// `-dv`: whether rays other than shadow rays see light sources.
+    pub lights_visible: bool,
+    /// How light is filed.
+    pub layers: Layers,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+/// What a ray sees in a surface.
+enum Seen<'a> {
+    /// The surface is not there.
+    Through,
+    /// Nothing comes from it.
+    Black,
+    /// A material.
+    Material(&'a Material),
+}
+
+impl Tracer<'_> {
+    /// Traces a ray: adds what it brings to the planes, and puts what it spawns into the bins.
+    pub(super) fn trace(&self, ray: &PathRay, sampler: &Sampler, scratch: &mut Scratch, spawner: &mut Spawner<'_>) {
+        let Some(meeting) = self.meet(ray) else { return };
+        let Meeting { hit, ray: last, length, .. } = meeting;
+        let path = &ray.path;
+        let (hit, material) = match hit {
+            Some((hit, material)) => (hit, material),
+            None => {
+                let ripple = ray.ripple * transmittance(path.extinction, f64::INFINITY);
+                return self.file(ray, ripple * self.escaped(ray, &last), spawner);
+            }
+        };
+
+        let front = hit.is_front(last.dir);
+        // A ray that meets a solid's boundary from inside was in the solid, even if it started there (the eye).
+        let extinction = match material {
+            Material::Dielectric(dielectric) if !front => dielectric.extinction().as_vec3(),
+            _ => path.extinction,
+        };
+        let ripple = ray.ripple * transmittance(extinction, length);
+        if ripple == Rgb::ZERO {
+            return;
+        }
+        if let Material::Emitter(emitter) = material {
+            if front && (self.lights_visible || !emitter.illuminates()) {
+                let distance = f64::from(path.blind_distance) + length;
+                self.file(ray, ripple * emitter.seen(last.dir, path.blind, distance), spawner);
+            }
+            return;
+        }
+
+        let absorbed = f64::from(extinction.min_element()) * length;
+        let weight = if absorbed > WEIGHTY_ABSORPTION { path.weight * (-absorbed).exp() as f32 } else { path.weight };
+        let departure = Departure { path, ripple, weight, length, point: hit.point, surface: hit.surface };
+        let interaction = Interaction::new(last.dir, hit.normal);
+        let mut spawn = |lobe| spawner.spawn(&departure, &lobe, sampler);
+        match material.respond(interaction) {
+            None => material.scatter(interaction, self.limits.glossy_threshold, &mut spawn),
+            Some(response) => {
+                response.scatter(self.limits.glossy_threshold, &mut spawn);
+                if !self.scene.lights.is_empty() && response.takes_direct_light() {
+                    let start = Ray::new(hit.point, last.dir).leaving(hit.surface);
+                    let lit = Lit { scene: self.scene, aggregate: self.aggregate, start, extinction };
+                    self.file(ray, ripple * lit.light(&response, sampler, scratch), spawner);
+                }
+            }
+        }
+    }
+
+    /// Adds light to the plane that a ray's light belongs to.
+    fn file(&self, ray: &PathRay, light: Rgb, spawner: &mut Spawner<'_>) {
+        if light != Rgb::ZERO {
+            spawner.planes.add(ray.path.pixel, ray.path.plane(self.layers), light);
+        }
+    }
+
+    /// Follows a ray through surfaces that are not there for it. `None` if nothing comes from where it ends.
+    fn meet(&self, from: &PathRay) -> Option<Meeting<'_>> {
+        let mut ray = from.ray;
+        let mut length = 0.0;
+        // A straight line meets no shape more than twice.
+        for _ in 0..=2 * self.aggregate.len() {
+            let Some(hit) = self.aggregate.closest(&ray) else {
+                // A ray that an aft plane ends sees nothing behind it.
+                return ray.t_max.is_infinite().then_some(Meeting { hit: None, ray, length });
+            };
+            length += hit.t;
+            match self.seen(&hit, &ray, from.path.blind) {
+                Seen::Material(material) => return Some(Meeting { hit: Some((hit, material)), ray, length }),
+                Seen::Black => return None,
+                Seen::Through => {
+                    ray = Ray::new(hit.point, ray.dir).leaving(hit.surface).up_to(ray.t_max - hit.t);
+                }
+            }
+        }
+        None
+    }
+
+    /// What a ray sees in a surface: an illum or a mirror may be something else to it, or nothing (Radiance reference manual).
+    fn seen(&self, hit: &Hit, ray: &Ray, blind: bool) -> Seen<'_> {
+        let Some(mut material) = self.scene.material(hit.surface) else { return Seen::Through };
+        let front = hit.is_front(ray.dir);
+        loop {
+            let alternate = match material {
+                Material::Emitter(emitter) => match emitter.kind() {
+                    // To rays that have counted its light already, the front of an illum is a light.
+                    EmitterKind::Illum(_) if front && blind => return Seen::Black,
+                    EmitterKind::Illum(alternate) => alternate,
+                    _ => return Seen::Material(material),
+                },
+                Material::Mirror(mirror) => {
+                    let alternate = mirror.alternate();
+                    let replaced = !front || !blind || self.is_transparent(alternate);
+                    if alternate == Alternate::None || !replaced {
+                        return Seen::Material(material);
+                    }
+                    alternate
+                }
+                _ => return Seen::Material(material),
+            };
+            match alternate {
+                Alternate::None | Alternate::Void => return Seen::Through,
+                // An alternate is defined before what names it, so this comes to an end.
+                Alternate::Material(id) => material = &self.scene.materials[id.index()],
+            }
+        }
+    }
+
+    fn is_transparent(&self, alternate: Alternate) -> bool {
+        match alternate {
+            Alternate::None => false,
+            Alternate::Void => true,
+            Alternate::Material(id) => self.scene.materials[id.index()].is_transparent(),
+        }
+    }
+
+    /// Radiance that a ray sees which meets nothing.
+    fn escaped(&self, from: &PathRay, ray: &Ray) -> Rgb {
+        if self.scene.far.is_empty() {
+            return Rgb::ZERO;
+        }
+        let Some(far) = self.scene.escaped(ray.dir) else { return Rgb::ZERO };
+        let material = self.scene.far[far.index()].material;
+        match &self.scene.materials[material.index()] {
+            Material::Emitter(emitter) if self.lights_visible || !emitter.illuminates() => {
+                emitter.seen(ray.dir, from.path.blind, f64::INFINITY)
+            }
+            _ => Rgb::ZERO,
+        }
+    }
+}
+
+/// Where a ray ends.
+struct Meeting<'a> {
+    /// The surface and what it is to this ray; `None`: nothing was met.
+    hit: Option<(Hit, &'a Material)>,
+    /// The last piece of the ray.
+    ray: Ray,
+    /// Length of all pieces.
+    length: f64,
+}
