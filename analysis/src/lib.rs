@@ -6,11 +6,17 @@
 //!
 //! The crate draws nothing and starts nothing; it meets the other crates in files alone.
 
+pub mod bayes;
 pub mod binomial;
 pub mod chi_square;
+pub mod contrast;
+pub mod effect;
+pub mod equivalence;
 pub mod exclude;
 pub mod interval;
+pub mod order;
 pub mod plan;
+pub mod power;
 pub mod proportion;
 pub mod provenance;
 pub mod report;

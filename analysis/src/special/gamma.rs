@@ -11,7 +11,9 @@ use super::ln_one_minus_exp;
 /// `a` > 0, `x` >= 0; at `x` = 0 it is 0, at infinity minus infinity.
 #[must_use]
 pub fn ln_upper(a: f64, x: f64) -> f64 {
-    if x <= 0.0 {
+    if x.is_nan() {
+        x
+    } else if x <= 0.0 {
         0.0
     } else if x.is_infinite() {
         f64::NEG_INFINITY
@@ -25,7 +27,9 @@ pub fn ln_upper(a: f64, x: f64) -> f64 {
 /// `ln P(a, x)`, the logarithm of the lower tail.
 #[must_use]
 pub fn ln_lower(a: f64, x: f64) -> f64 {
-    if x <= 0.0 {
+    if x.is_nan() {
+        x
+    } else if x <= 0.0 {
         f64::NEG_INFINITY
     } else if x.is_infinite() {
         0.0
