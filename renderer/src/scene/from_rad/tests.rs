@@ -1,1 +1,234 @@
+use glam::DVec3;
 
+use crate::geometry::{Passage, Ray, Shape, SurfaceId};
+use crate::material::{Alternate, EmitterKind, Material};
+use crate::rad::{self, MemoryFiles, Options, Source};
+use crate::scene::{FarId, Scene};
+
+fn build(text: &str) -> Result<Scene, String> {
+    let document = rad::read(&[Source::new("test.rad", text)], &MemoryFiles::new(), &Options::default())
+        .map_err(|errors| format!("not even text: {errors:?}"))?;
+    Scene::from_rad(&document).map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+}
+
+fn warnings(scene: &Scene) -> Vec<String> {
+    scene.warnings.iter().map(|warning| format!("{}:{} {}", warning.line, warning.column, warning.message)).collect()
+}
+
+const GREY: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\n";
+const LAMP: &str = "void light lamp 0 0 3 1 2 3\n";
+
+#[test]
+fn every_surface_type_becomes_its_shape() {
+    let scene = build(&format!(
+        "{GREY}
+        grey polygon square 0 0 12 0 0 0  1 0 0  1 1 0  0 1 0
+        grey polygon three 0 0 12 0 0 0  1 0 0  1 1 0  0 0 0
+        grey sphere ball 0 0 4 0 0 0 2
+        grey sphere hollow 0 0 4 0 0 0 -2
+        grey bubble hollow2 0 0 4 0 0 0 2
+        grey cone frustum 0 0 8 0 0 0 0 0 1 1 .5
+        grey cup frustum2 0 0 8 0 0 0 0 0 1 1 .5
+        grey cone swapped 0 0 8 0 0 0 0 0 1 -1 -.5
+        grey cylinder rod 0 0 7 0 0 0 0 0 1 1
+        grey tube pipe 0 0 7 0 0 0 0 0 1 1
+        grey ring disc 0 0 8 0 0 0 0 0 2 1 0
+        void polygon unseen 0 0 9 0 0 5 1 0 5 0 1 5"
+    ))
+    .unwrap();
+    assert!(scene.warnings.is_empty());
+    let shape = |index: usize| &scene.surfaces[index].shape;
+    let is_bubble = |index| matches!(shape(index), Shape::Sphere(sphere) if sphere.is_bubble());
+    let is_inward = |index| matches!(shape(index), Shape::Cone(cone) if cone.is_inward());
+    assert!(matches!(shape(0), Shape::Polygon(polygon) if polygon.vertices().len() == 4));
+    assert!(matches!(shape(1), Shape::Triangle(_)));
+    assert_eq!([2, 3, 4].map(is_bubble), [false, true, true]);
+    assert_eq!([5, 6, 7, 8, 9].map(is_inward), [false, true, true, false, true]);
+    assert!(matches!(shape(10), Shape::Ring(ring) if ring.radii() == [0.0, 1.0] && ring.normal() == DVec3::Z));
+    // Surfaces without a material are not there for rays.
+    assert_eq!((scene.surfaces.len(), scene.aggregate().len()), (12, 11));
+    assert_eq!(
+        (scene.name(scene.surfaces[8].name), scene.surfaces[8].modifier.map(|id| scene.name(id))),
+        ("rod", Some("grey"))
+    );
+    assert_eq!((scene.surfaces[11].modifier, scene.materials.len()), (None, 1));
+}
+
+#[test]
+fn what_covers_nothing_is_left_out_with_a_warning() {
+    let scene = build(&format!(
+        "{GREY}grey sphere point 0 0 4 0 0 0 0\ngrey polygon line 0 0 9 0 0 0 1 1 1 2 2 2
+grey cylinder stub 0 0 7 1 2 3 1 2 3 1\n  grey ring gap 0 0 8 0 0 0 0 0 1 1 1\ngrey polygon bent 0 0 12 0 0 0 1 0 0 1 1 .3 0 1 0
+{LAMP}lamp source nowhere 0 0 4 0 0 1 0\ngrey source dull 0 0 4 0 0 1 5"
+    ))
+    .unwrap();
+    assert_eq!(
+        warnings(&scene),
+        [
+            "2:6 sphere `point` is left out: its radius is zero",
+            "3:6 polygon `line` is left out: it has no area",
+            "4:6 cylinder `stub` is left out: its ends coincide",
+            "5:8 ring `gap` is left out: it has no area",
+            "6:6 polygon `bent` is not flat: a vertex is off its plane by 5.07 % of its extent",
+            "8:33 source `nowhere` is left out: with an angle of 0 it covers nothing",
+            "9:1 source `dull` does not show: its material does not emit; use light, glow or illum",
+        ]
+    );
+    assert_eq!(scene.surfaces.len(), 1);
+    // A thousand of them are not listed.
+    let many = format!("{GREY}{}", "grey sphere point 0 0 4 0 0 0 0\n".repeat(1000));
+    let warnings = warnings(&build(&many).unwrap());
+    assert_eq!((warnings.len(), warnings[20].as_str()), (21, "0:0 980 more warnings like these"));
+}
+
+#[test]
+fn errors_have_places() {
+    let table = [
+        ("void mist fog 0 0 0\nfog sphere s 0 0 4 0 0 0 1", "1:6", "`mist` is not supported yet"),
+        (
+            "void plastic2 p 4 1 0 0 . 0 6 1 1 1 0 .1 .1\np sphere s 0 0 4 0 0 0 1",
+            "1:6",
+            "`plastic2` is not supported yet",
+        ),
+        (
+            "void brightfunc dots 2 dots . 0 0\ndots plastic p 0 0 5 1 1 1 0 0\np sphere s 0 0 4 0 0 0 1",
+            "1:6",
+            "pattern `dots`: the type `brightfunc` is not supported yet",
+        ),
+        (
+            "void plastic q 0 0 5 1 1 1 0 0\nq plastic p 0 0 5 1 1 1 0 0\np sphere s 0 0 4 0 0 0 1",
+            "2:3",
+            "its modifier `q` is another",
+        ),
+        ("void plastic p 0 0 5 1 -1 1 0 0\np sphere s 0 0 4 0 0 0 1", "1:24", "green"),
+        ("void plastic p 0 0 5 1 1 1 2 0\np sphere s 0 0 4 0 0 0 1", "1:28", "specularity"),
+        ("void plastic p 0 0 5 1 1 1 0 0\np ring r 0 0 8 0 0 0 0 0 1 -1 2", "2:28", "the radius is -1"),
+        ("void plastic p 0 0 5 1 1 1 0 0\np cone c 0 0 8 0 0 0 0 0 1 -1 2", "2:31", "different signs"),
+        ("void plastic p 0 0 5 1 1 1 0 0\np sphere s 0 0 4 1e200 0 0 1", "2:18", "too large"),
+        ("void light l 0 0 3 1 1 1\nl source s 0 0 4 0 0 0 1", "2:18", "0 0 0"),
+        ("void light l 0 0 3 1 1 1\nl source s 0 0 4 0 0 1 361", "2:24", "0 to 360"),
+        ("void illum i 1 none 0 3 1 1 1\ni sphere s 0 0 4 0 0 0 1", "1:16", "`none` is no material defined before"),
+        ("void plastic p 0 0 5 1 1 1 0 0\np instance i 1 x.oct 0 0", "2:3", "`instance` is not supported yet"),
+    ];
+    for (text, place, message) in table {
+        let error = build(text).unwrap_err();
+        assert!(error.starts_with(&format!("test.rad:{place}")), "{text}\n{error}");
+        assert!(error.contains(message), "{text}\n{error}");
+        assert!(!error.contains("test.rad:0"), "{error}");
+    }
+    // What nothing uses is not looked at.
+    assert!(build("void mist fog 0 0 0\nvoid brightfunc b 2 f . 0 0\nb plastic p 0 0 5 1 1 1 0 0").is_ok());
+    // Each material is reported once, whoever uses it; errors end at a number that one reads.
+    let twice = "void plastic p 0 0 5 1 -1 1 0 0\np sphere s 0 0 4 0 0 0 1\np sphere t 0 0 4 0 0 0 1";
+    assert_eq!(build(twice).unwrap_err().matches("test.rad").count(), 1);
+    let many = format!("void light l 0 0 3 1 1 1\n{}", "l source s 0 0 4 0 0 0 1\n".repeat(100));
+    assert_eq!(build(&many).unwrap_err().matches("test.rad").count(), rad::MAX_ERRORS);
+}
+
+#[test]
+fn emitters_light_as_radiance_says() {
+    let scene = build(
+        "void light lamp 0 0 3 1 1 1
+        void light dark 0 0 3 0 0 0
+        void glow near 0 0 4 1 1 1 2
+        void glow sky 0 0 4 1 1 1 0
+        void glow dead 0 0 4 1 1 1 -1
+        void spotlight spot 0 0 7 1 1 1 20 0 0 -1
+        void glass pane 0 0 3 .9 .9 .9
+        void illum window 1 pane 0 3 1 1 1
+        void illum open 1 void 0 3 1 1 1
+        lamp sphere s0 0 0 4 0 0 0 1
+        dark sphere s1 0 0 4 3 0 0 1
+        near sphere s2 0 0 4 6 0 0 1
+        sky sphere s3 0 0 4 9 0 0 1
+        dead sphere s4 0 0 4 12 0 0 1
+        spot ring s5 0 0 8 0 0 5 0 0 -1 0 1
+        window polygon s6 0 0 9 0 5 0 1 5 0 1 5 1
+        open polygon s7 0 0 9 0 6 0 1 6 0 1 6 1
+        near source f0 0 0 4 0 0 1 180
+        lamp source f1 0 0 4 0 0 1 .5
+        sky source f2 0 0 4 0 0 -1 180",
+    )
+    .unwrap();
+    let lit_by: Vec<String> = scene.lights.iter().map(|light| format!("{:?}", light.source())).collect();
+    let expected = ["0", "2", "5", "6", "7"].map(|id| format!("Surface(SurfaceId({id}))"));
+    assert_eq!(lit_by[..5], expected);
+    // A distant glow is sky, not sun.
+    assert_eq!(lit_by[5..], ["Far(FarId(1))"]);
+    assert_eq!(scene.far[1].axis(), DVec3::Z);
+    assert!((scene.far[1].versine() - (1.0 - 0.25_f64.to_radians().cos())).abs() < 1e-15);
+    // The sun shows before the sky around it; below the horizon is the other sky.
+    assert_eq!(scene.escaped(DVec3::Z), Some(FarId(1)));
+    assert_eq!(scene.escaped(DVec3::new(0.6, 0.0, 0.8)), Some(FarId(0)));
+    assert_eq!(scene.escaped(-DVec3::Z), Some(FarId(2)));
+    // The alternate is built though no surface names it, and before the illum.
+    let illum = scene.material(SurfaceId(6)).unwrap();
+    let Material::Emitter(emitter) = illum else { panic!("an emitter") };
+    let EmitterKind::Illum(Alternate::Material(pane)) = emitter.kind() else { panic!("an alternate") };
+    assert!(matches!(scene.materials[pane.index()], Material::Glass(_)));
+}
+
+#[test]
+fn shadow_rays_pass_what_is_clear() {
+    let materials = "void glass clear 0 0 3 .9 .9 .9
+        void glass black 0 0 3 0 0 0
+        void trans smooth 0 0 7 1 1 1 0 0 .5 .5
+        void trans rough 0 0 7 1 1 1 0 .1 .5 .5
+        void trans diffuse 0 0 7 1 1 1 0 0 .5 0
+        void dielectric water 0 0 5 1 1 1 1.33 0
+        void mirror m 0 0 3 1 1 1
+        void illum open 0 0 3 1 1 1
+        void illum wet 1 water 0 3 1 1 1
+        void illum shut 1 m 0 3 1 1 1\n";
+    let names = ["clear", "black", "smooth", "rough", "diffuse", "water", "m", "open", "wet", "shut"];
+    let spheres: String = names.iter().map(|name| format!("{name} sphere s 0 0 4 0 0 0 1\n")).collect();
+    let scene = build(&format!("{materials}{spheres}")).unwrap();
+    use Passage::{Opaque, Refracting, Straight};
+    let found: Vec<Passage> =
+        scene.surfaces.iter().filter_map(|surface| Some(scene.passage(surface.material?))).collect();
+    assert_eq!(found, [Straight, Opaque, Straight, Opaque, Opaque, Refracting, Opaque, Straight, Refracting, Opaque]);
+}
+
+/// Names bind to the latest definition before them; of coincident surfaces the one of the later modifier shows.
+#[test]
+fn redefined_materials_and_coincident_surfaces() {
+    let scene = build(
+        "void plastic a 0 0 5 .1 .1 .1 0 0
+        a polygon first 0 0 12 0 0 0 1 0 0 1 1 0 0 1 0
+        void plastic a 0 0 5 .2 .2 .2 0 0
+        a polygon second 0 0 12 0 0 0 1 0 0 1 1 0 0 1 0
+        void plastic b 0 0 5 .3 .3 .3 0 0
+        b polygon back 0 0 12 0 0 0 0 1 0 1 1 0 1 0 0",
+    )
+    .unwrap();
+    assert_eq!(scene.materials.len(), 3);
+    let above = Ray::new(DVec3::new(0.4, 0.3, 1.0), -DVec3::Z);
+    let hit = scene.aggregate().closest(&above).unwrap();
+    assert_eq!(scene.name(scene.surface(hit.surface).name), "second");
+}
+
+#[test]
+fn an_empty_scene_is_a_scene() {
+    let scene = build("# nothing\n").unwrap();
+    assert!(scene.aggregate().is_empty() && scene.lights.is_empty() && scene.escaped(DVec3::X).is_none());
+}
+
+#[test]
+fn mirrors_relay_once_unless_told_otherwise() {
+    let text = format!(
+        "{LAMP}void mirror m 0 0 3 1 1 1
+        lamp ring l 0 0 8 0 0 3 0 0 -1 0 .1
+        m polygon left 0 0 12 -2 -2 0 -2 2 0 -2 2 4 -2 -2 4
+        m polygon right 0 0 12 2 -2 0 2 -2 4 2 2 4 2 2 0
+        m sphere ball 0 0 4 0 9 0 1"
+    );
+    let mut scene = build(&text).unwrap();
+    assert_eq!(
+        warnings(&scene),
+        ["6:11 mirror `ball` is curved, so it reflects what is seen but casts no light; only polygons and rings do"]
+    );
+    let relays = |scene: &Scene| scene.lights.iter().map(|light| light.relay().len()).collect::<Vec<_>>();
+    assert_eq!(relays(&scene), [0, 1, 1]);
+    scene.set_relays(2);
+    assert_eq!(relays(&scene), [0, 1, 1, 2, 2]);
+}
