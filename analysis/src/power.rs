@@ -152,7 +152,12 @@ mod tests {
             assert_eq!(at(bound).map(|size| size.held_from), held, "{bound}");
         }
         // .2 JOD.
-        let size = sample_size(Question::Equivalence { truth: 0.5, bound: 0.0536 }, 0.9, 0.05).unwrap();
+        let size = sample_size(
+            Question::Equivalence { truth: 0.5, bound: stimuli::study::AnalysisPlan::proportion_of_jod(0.2) },
+            0.9,
+            0.05,
+        )
+        .unwrap();
         assert!(size.held_from == 969, "{size:?}");
     }
 
