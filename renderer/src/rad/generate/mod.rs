@@ -78,6 +78,3 @@ impl<'a> Output<'a> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

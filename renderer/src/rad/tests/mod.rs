@@ -1,5 +1,8 @@
 //! The reader as a whole, on texts of its own.
 
+mod commands;
+mod real_programs;
+
 use super::{Argument, Document, Error, Kind, MemoryFiles, Options, Source, read};
 
 fn read_text(text: &str) -> Result<Document, Vec<Error>> {
