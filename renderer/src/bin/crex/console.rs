@@ -4,7 +4,9 @@ use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use renderer::picture;
+use renderer::schedule::{Clock, MonotonicClock};
 use serde::Serialize;
 
 /// Why a command ends without its result.
@@ -76,4 +78,35 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string(value).map_err(|error| Failure::Cannot(error.to_string()))?;
     print(&format!("{text}\n"))
+}
+
+/// A bar on standard error, if that is a terminal and the work takes over a second.
+pub(crate) struct Progress<'a> {
+    bar: ProgressBar,
+    clock: &'a MonotonicClock,
+    begun_s: f64,
+}
+
+impl<'a> Progress<'a> {
+    /// Parts of the work that the bar tells apart.
+    const STEPS: u64 = 1000;
+
+    pub(crate) fn new(clock: &'a MonotonicClock) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(Self::STEPS), ProgressDrawTarget::stderr_with_hz(5));
+        let style = ProgressStyle::with_template("{wide_bar} {percent:>3} % {elapsed} left {eta}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self { bar, clock, begun_s: clock.now_s() }
+    }
+
+    /// Shows how much is done, from 0 to 1.
+    pub(crate) fn set(&self, fraction: f64) {
+        if self.clock.now_s() - self.begun_s > 1.0 {
+            self.bar.set_position((fraction * Self::STEPS as f64) as u64);
+        }
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn done(&self) {
+        self.bar.finish_and_clear();
+    }
 }

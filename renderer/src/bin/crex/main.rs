@@ -4,8 +4,13 @@
 mod compare;
 mod console;
 mod options;
+mod output;
 mod plan;
+mod render;
+mod scene_files;
+mod snapshots;
 mod spellings;
+mod stats;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -14,6 +19,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use console::Failure;
 use options::RadianceOptions;
+use renderer::schedule::MonotonicClock;
 
 /// Renders Radiance scenes by light-transport component, in the order that a component regular expression says.
 #[derive(Parser, Debug)]
@@ -25,6 +31,8 @@ struct Cli {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    /// Render scenes to pictures
+    Render(Box<render::Args>),
     /// Explain a crex stage by stage
     Plan(plan::Args),
     /// Measure how far a picture lies from a reference
@@ -35,19 +43,23 @@ enum Command {
 const RENDERING: [&str; 1] = ["render"];
 
 fn main() -> ExitCode {
+    let clock = MonotonicClock::start();
     let words: Vec<OsString> = std::env::args_os().collect();
-    match run(words) {
+    match run(words, &clock) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
     }
 }
 
-fn run(words: Vec<OsString>) -> Result<(), Failure> {
-    let (words, _radiance) = radiance_options(words)?;
-    let matches =
-        Cli::command().after_long_help(spellings::help()).try_get_matches_from(words).map_err(Failure::Usage)?;
+fn run(words: Vec<OsString>, clock: &MonotonicClock) -> Result<(), Failure> {
+    let (words, radiance) = radiance_options(words)?;
+    let matches = Cli::command()
+        .mut_subcommand(RENDERING[0], |command| command.after_long_help(spellings::help()))
+        .try_get_matches_from(words)
+        .map_err(Failure::Usage)?;
     let cli = Cli::from_arg_matches(&matches).map_err(Failure::Usage)?;
     match cli.command {
+        Command::Render(args) => render::run(&args, &radiance, clock),
         Command::Plan(args) => plan::run(&args),
         Command::Compare(args) => compare::run(&args),
     }

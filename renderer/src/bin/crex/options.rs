@@ -31,8 +31,6 @@ pub(crate) struct RadianceOptions {
     pub(crate) diffuse_rays: u32,
     /// `-av`.
     pub(crate) ambient: [f64; 3],
-    /// `-i`.
-    pub(crate) irradiance: bool,
     /// `-lr`.
     pub(crate) reflections: i32,
     /// `-lw`.
@@ -41,14 +39,8 @@ pub(crate) struct RadianceOptions {
     pub(crate) glossy_threshold: f64,
     /// `-ss`.
     pub(crate) glossy_rays: f64,
-    /// `-bv`.
-    pub(crate) backs: bool,
     /// `-dv`.
     pub(crate) lights_visible: bool,
-    /// `-dj`.
-    pub(crate) light_jitter: f64,
-    /// `-ds`.
-    pub(crate) light_division: f64,
     /// `-dr`.
     pub(crate) relays: u32,
     /// `-n`.
@@ -70,15 +62,11 @@ impl Default for RadianceOptions {
             diffuse: None,
             diffuse_rays: 1,
             ambient: [0.0; 3],
-            irradiance: false,
             reflections: 7,
             least_weight: 1e-4,
             glossy_threshold: 0.0,
             glossy_rays: 1.0,
-            backs: true,
             lights_visible: true,
-            light_jitter: 1.0,
-            light_division: 0.25,
             relays: 1,
             threads: None,
             without_effect: Vec::new(),
@@ -261,15 +249,11 @@ impl RadianceOptions {
             "-ab" => self.diffuse = Some(count),
             "-ad" => self.diffuse_rays = count,
             "-av" => self.ambient = [at_least(0.0)?, value[1], value[2]],
-            "-i" => self.irradiance = value[0] != 0.0,
             "-lr" => self.reflections = value[0] as i32,
             "-lw" => self.least_weight = at_least(0.0)?,
             "-st" => self.glossy_threshold = at_least(0.0)?,
             "-ss" => self.glossy_rays = at_least(0.0)?,
-            "-bv" => self.backs = value[0] != 0.0,
             "-dv" => self.lights_visible = value[0] != 0.0,
-            "-dj" => self.light_jitter = at_least(0.0)?.min(1.0),
-            "-ds" => self.light_division = at_least(0.0)?,
             "-dr" => self.relays = count,
             "-n" => self.threads = Some(count),
             _ => {}

@@ -31,12 +31,10 @@ fn a_usual_rpict_command_line_is_taken() {
     assert_eq!((options.diffuse, options.diffuse_rays, options.ambient), (Some(2), 512, [0.1, 0.2, 0.3]));
     assert_eq!((options.reflections, options.least_weight), (-12, 1e-5));
     assert_eq!((options.glossy_threshold, options.glossy_rays), (0.15, 16.0));
-    assert_eq!((options.backs, options.lights_visible, options.irradiance), (false, true, false));
-    assert_eq!((options.light_jitter, options.light_division, options.relays), (0.7, 0.15, 2));
-    assert_eq!(options.threads, Some(3));
-    // -ps 4, -pt .05, -aa, -ar, -as, -dp and -u+ ask for what is not done; -pd 0, -aw 0, -dt 0, -dc 1 ask for what is.
+    assert_eq!((options.lights_visible, options.relays, options.threads), (true, 2, Some(3)));
+    // Some ask for what is not done; -pd 0, -aw 0, -dt 0, -dc 1 and -i- ask for what is.
     let told: Vec<&str> = options.without_effect.iter().filter_map(|text| text.split(' ').next()).collect();
-    assert_eq!(told, ["-ps", "-pt", "-aa", "-ar", "-as", "-dp", "-u+"]);
+    assert_eq!(told, ["-ps", "-pt", "-aa", "-ar", "-as", "-bv-", "-dj", "-ds", "-dp", "-u+"]);
 }
 
 #[test]
@@ -48,12 +46,12 @@ fn nothing_given_changes_nothing() {
 
 #[test]
 fn switches_are_read_as_rpict_reads_them() {
-    for (text, on) in [("-bv", false), ("-bv+", true), ("-bv-", false), ("-bvy", true), ("-bv0", false), ("-bvT", true)]
+    for (text, on) in [("-dv", false), ("-dv+", true), ("-dv-", false), ("-dvy", true), ("-dv0", false), ("-dvT", true)]
     {
-        assert_eq!(read(text).unwrap().1.backs, on, "{text}");
+        assert_eq!(read(text).unwrap().1.lights_visible, on, "{text}");
     }
-    assert!(read("-i").unwrap().1.irradiance);
-    assert!(read("-i+").unwrap().1.irradiance);
+    assert_eq!(read("-i").unwrap().1.without_effect, ["-i changes nothing here: pictures hold radiance"]);
+    assert!(read("-i-").unwrap().1.without_effect.is_empty());
 }
 
 #[test]

@@ -1,0 +1,258 @@
+//! `crex render`: scenes to pictures.
+
+use std::path::{Path, PathBuf};
+
+use renderer::crex::{self, Program, Setting};
+use renderer::film::Layers;
+use renderer::importance::map::ImportanceMap;
+use renderer::picture::{AtomicFile, Format, Input, Provenance, grey};
+use renderer::render::{RenderError, Renderer, Rendering, Settings};
+use renderer::scene::View;
+use renderer::schedule::{Clock, MonotonicClock};
+use renderer::transport::Limits;
+use stimuli::Sha256;
+
+use crate::console::{self, Failure, Progress};
+use crate::options::RadianceOptions;
+use crate::output::{self, Output};
+use crate::scene_files::{self, LoadedScene, SceneArgs};
+use crate::stats::Stats;
+use crate::{plan, snapshots};
+
+/// What `crex render` takes besides rpict's options.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// What to trace and in which order, such as 'T{RSGM}'; '' is primary rays and direct light alone
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
+    crex: String,
+    /// The picture: .exr with a layer for each component, .hdr or .png; `-` is HDR on standard output. May be repeated
+    #[arg(short, long, value_name = "OUT", required = true)]
+    output: Vec<PathBuf>,
+    /// Samples for each pixel
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    spp: u32,
+    /// Chooses the random numbers: the same seed gives the same bits
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// Threads, also -n [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    threads: Option<u32>,
+    /// Radiance times this is stored in .hdr, with an EXPOSURE line, and shown in .png; .exr always holds radiance
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    exposure: f64,
+    /// The event of a path that says in which layer its light is filed
+    #[arg(long, value_name = "WHICH", default_value = "last")]
+    layers: LayerChoice,
+    /// How much each pixel matters, for { }: a grey .png or an .exr with values in [0,1]
+    #[arg(long, value_name = "MAP")]
+    importance: Option<PathBuf>,
+    /// Importance that each member of each { } needs, from left to right, in place of i/(n+1)
+    #[arg(long, value_name = "A,B,..", value_delimiter = ',')]
+    thresholds: Option<Vec<f32>>,
+    /// Also write the picture after the primary rays and after each stage into this folder
+    #[arg(long, value_name = "DIR")]
+    snapshots: Option<PathBuf>,
+    /// Also write what was traced, stage by stage, as JSON
+    #[arg(long, value_name = "FILE")]
+    stats: Option<PathBuf>,
+}
+
+/// `--layers`.
+#[derive(clap::ValueEnum, Clone, Copy, Debug)]
+enum LayerChoice {
+    /// The event that spawned the ray which brought the light
+    Last,
+    /// The first event of its path from the eye
+    First,
+}
+
+/// Everything that a picture depends on, checked.
+pub(crate) struct Request {
+    pub(crate) program: Program,
+    pub(crate) view: View,
+    pub(crate) settings: Settings,
+    pub(crate) importance: Option<ImportanceMap>,
+    pub(crate) thresholds: Option<Vec<f32>>,
+    pub(crate) provenance: Provenance,
+}
+
+pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock) -> Result<(), Failure> {
+    for message in &options.without_effect {
+        console::say("note", message);
+    }
+    let outputs = outputs(args)?;
+    let ast = plan::parse(&args.crex)?;
+    let LoadedScene { mut scene, inputs } = scene_files::load(&args.scene.scenes, &args.scene.search)?;
+    scene.set_relays(options.relays);
+    let request = request(args, options, Program::new(&ast), inputs)?;
+    let setting = Setting {
+        components: Some(scene.components(options.glossy_threshold)),
+        importance_map: Some(args.importance.is_some()),
+        time_limit: Some(false),
+    };
+    for warning in crex::warnings(&ast, &setting) {
+        console::say("warning", &warning.render(&args.crex));
+    }
+
+    let aggregate = scene.aggregate();
+    let progress = Progress::new(clock);
+    let report = |fraction| progress.set(fraction);
+    let refused = |error: RenderError| match error {
+        RenderError::Threads { .. } => Failure::Cannot(error.to_string()),
+        _ => Failure::input(error),
+    };
+    let Request { program, view, settings, .. } = &request;
+    let mut renderer = Renderer::new(&scene, &aggregate, view, program, clock, settings.clone())
+        .map_err(refused)?
+        .with_progress(&report);
+    if let Some(map) = &request.importance {
+        renderer = renderer.with_importance(map.values()).map_err(refused)?;
+    }
+    if let Some(thresholds) = &request.thresholds {
+        renderer = renderer.with_thresholds(thresholds).map_err(refused)?;
+    }
+    let rendering = match &args.snapshots {
+        None => renderer.render().map_err(refused)?,
+        Some(folder) => {
+            let mut snapshots = snapshots::Writer::new(folder, outputs[0].path(), args.exposure, &request.provenance)?;
+            let rendering = renderer.render_stages(&mut |snapshot| snapshots.write(&snapshot)).map_err(refused)?;
+            snapshots.finish()?;
+            rendering
+        }
+    };
+    progress.done();
+    for span in &rendering.stopped {
+        let text = crex::Warning { message: "`*` was stopped after a million runs".to_owned(), span: *span };
+        console::say("warning", &text.render(&args.crex));
+    }
+    for output in &outputs {
+        output.write(&rendering.film, args.exposure, &request.provenance)?;
+    }
+    write_stats(args, &request, &rendering, clock)
+}
+
+/// The places for the pictures, each checked, and made safe against interruption.
+fn outputs(args: &Args) -> Result<Vec<Output>, Failure> {
+    if !(args.exposure.is_finite() && args.exposure > 0.0) {
+        return Err(Failure::input(format!("--exposure {} must be a positive number", args.exposure)));
+    }
+    let outputs = args.output.iter().map(|path| Output::new(path)).collect::<Result<Vec<_>, _>>()?;
+    if outputs.iter().filter(|output| output.path().is_none()).count() > 1 {
+        return Err(Failure::input("`-o -` is given twice: standard output holds one picture"));
+    }
+    let mut paths: Vec<PathBuf> = outputs.iter().filter_map(Output::path).map(Path::to_owned).collect();
+    if let Some(file) = &args.stats {
+        output::check_folder(file)?;
+        paths.push(file.clone());
+    }
+    output::clean_up_when_interrupted(paths);
+    Ok(outputs)
+}
+
+fn request(args: &Args, options: &RadianceOptions, program: Program, inputs: Vec<Input>) -> Result<Request, Failure> {
+    if !options.view_given {
+        console::say(
+            "warning",
+            "no view is given (-vf FILE, or -vp, -vd and so on): rpict's default looks north from the origin",
+        );
+    }
+    let view = View::new(options.view).map_err(Failure::input)?;
+    let [width, height] = options.size.map(|pixels| pixels as usize);
+    let (width, height) = view.resolution(width, height, options.pixel_aspect);
+    let threads = args.threads.or(options.threads).map(|threads| threads as usize);
+    let settings = Settings {
+        width,
+        height,
+        samples: args.spp,
+        seed: args.seed,
+        jitter: options.pixel_jitter,
+        limits: Limits {
+            reflections: options.reflections,
+            least_weight: options.least_weight,
+            diffuse: options.diffuse,
+            glossy_threshold: options.glossy_threshold,
+            diffuse_rays: options.diffuse_rays,
+            glossy_rays: options.glossy_rays,
+        },
+        ambient: options.ambient.into(),
+        lights_visible: options.lights_visible,
+        layers: match args.layers {
+            LayerChoice::Last => Layers::Last,
+            LayerChoice::First => Layers::First,
+        },
+        threads,
+    };
+    let mut inputs = inputs;
+    let importance = match &args.importance {
+        None => None,
+        Some(path) => {
+            let (map, input) = importance(path, width, height)?;
+            inputs.push(input);
+            Some(map)
+        }
+    };
+    let mut words = format!("--spp {} --seed {}", args.spp, args.seed);
+    if matches!(args.layers, LayerChoice::First) {
+        words.push_str(" --layers first");
+    }
+    if let Some(thresholds) = &args.thresholds {
+        let list: Vec<String> = thresholds.iter().map(f32::to_string).collect();
+        words.push_str(&format!(" --thresholds {}", list.join(",")));
+    }
+    if !options.spelled.is_empty() {
+        words.push_str(&format!(" {}", options.spelled));
+    }
+    let provenance = Provenance {
+        software: format!("crex {}", env!("CARGO_PKG_VERSION")),
+        crex: Some(args.crex.clone()),
+        view: Some(options.view.to_string()),
+        options: Some(words),
+        inputs,
+        exposure: None,
+    };
+    Ok(Request { program, view, settings, importance, thresholds: args.thresholds.clone(), provenance })
+}
+
+/// Reads an importance map and brings it to the picture's size, with a word on how.
+fn importance(path: &Path, width: usize, height: usize) -> Result<(ImportanceMap, Input), Failure> {
+    let bytes = std::fs::read(path).unwrap_or_default();
+    let map = grey::read(path)?;
+    let (found_width, found_height) = (map.width(), map.height());
+    let map = ImportanceMap::new(map).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+    let map = if (found_width, found_height) == (width, height) {
+        map
+    } else {
+        console::say(
+            "note",
+            &format!(
+                "{} has {found_width} x {found_height} pixels, the picture {width} x {height}: each pixel takes the largest \
+                 value of the map's pixels that it overlaps",
+                path.display()
+            ),
+        );
+        map.resized(width, height)
+    };
+    let name = scene_files::base_name(&path.to_string_lossy());
+    Ok((map, Input { name, sha256: Sha256::of(&bytes).to_string() }))
+}
+
+fn write_stats(args: &Args, request: &Request, rendering: &Rendering, clock: &MonotonicClock) -> Result<(), Failure> {
+    let Some(file) = &args.stats else { return Ok(()) };
+    let threads = request.settings.threads;
+    let threads = threads.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1);
+    let stats = Stats::new(&request.program, &request.settings, rendering, threads).with_wall_s(clock.now_s());
+    let text = serde_json::to_string_pretty(&stats).map_err(|error| Failure::Cannot(error.to_string()))?;
+    AtomicFile::write_all(file, format!("{text}\n").as_bytes())
+        .map_err(|error| Failure::Cannot(format!("{}: cannot be written: {error}", file.display())))
+}
+
+/// The extension of the pictures beside a main one: its own, or EXR beside standard output.
+pub(crate) fn format_beside(main: Option<&Path>) -> &'static str {
+    match main.and_then(Format::of_name) {
+        Some(Format::Png) => "png",
+        Some(Format::Hdr) => "hdr",
+        _ => "exr",
+    }
+}

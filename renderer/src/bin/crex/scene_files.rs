@@ -1,0 +1,93 @@
+//! From scene files on the command line to a scene.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use renderer::picture::Input;
+use renderer::rad::{self, DiskFiles, Document, Files, Source};
+use renderer::scene::Scene;
+use stimuli::Sha256;
+
+use crate::console::{self, Failure};
+
+/// What the commands that read scenes take.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct SceneArgs {
+    /// Scene files (.rad), read as one; `-` is standard input
+    #[arg(value_name = "SCENE", required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+}
+
+/// Where files that scenes name are looked for.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub(crate) struct SearchArgs {
+    /// Folders in which files that scenes name are looked for, after the scene's own and before those of RAYPATH
+    #[arg(long = "path", value_name = "DIRS")]
+    pub(crate) path: Vec<PathBuf>,
+}
+
+impl SearchArgs {
+    /// Finds files in the scene's folder, then `--path`, then RAYPATH, which the program reads and the library never.
+    pub(crate) fn files(&self) -> DiskFiles {
+        let given = self.path.iter().flat_map(std::env::split_paths);
+        let ray_path = std::env::var_os("RAYPATH").unwrap_or_default();
+        // An empty entry, or `.`, would be the current folder; rpict looks there first, the scene's folder stands in for it.
+        let usual = std::env::split_paths(&ray_path).filter(|place| !place.as_os_str().is_empty());
+        DiskFiles::new(given.chain(usual).collect())
+    }
+}
+
+/// A scene with what its pictures say of their making.
+pub(crate) struct LoadedScene {
+    pub(crate) scene: Scene,
+    pub(crate) inputs: Vec<Input>,
+}
+
+/// Reads scene files as one scene; warnings go to standard error.
+pub(crate) fn load(scenes: &[PathBuf], search: &SearchArgs) -> Result<LoadedScene, Failure> {
+    let sources = scenes.iter().map(|path| source(path)).collect::<Result<Vec<_>, _>>()?;
+    let document = rad::read(&sources, &search.files(), &rad::Options::default()).map_err(|errors| told(&errors))?;
+    let scene = Scene::from_rad(&document).map_err(|errors| told(&errors))?;
+    for warning in document.warnings.iter().chain(&scene.warnings) {
+        console::say("warning", &warning.to_string());
+    }
+    Ok(LoadedScene { inputs: inputs(&document), scene })
+}
+
+fn source(path: &Path) -> Result<Source, Failure> {
+    if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        let read = std::io::stdin().lock().read_to_end(&mut bytes);
+        read.map_err(|error| Failure::Cannot(format!("standard input: {error}")))?;
+        return Ok(Source::new("standard input", bytes));
+    }
+    if path.extension().is_some_and(|extension| extension == "oct" || extension == "rif") {
+        let advice = "octrees and .rif files are not read yet: give the .rad files that they are made of";
+        return Err(Failure::input(format!("{}: {advice}", path.display())));
+    }
+    let name = path.to_string_lossy();
+    // The place that is given is the only one: RAYPATH is for what scenes name.
+    let found = DiskFiles::default().find(&name, "");
+    found.map(Source::from).map_err(|reason| Failure::input(format!("{name}: {reason}")))
+}
+
+/// Each mistake with its place, the line and a caret.
+fn told(errors: &[rad::Error]) -> Failure {
+    Failure::Input(errors.iter().map(|error| error.to_string().trim_end().to_owned()).collect::<Vec<_>>().join("\n"))
+}
+
+/// The texts that were read, by name and hash.
+fn inputs(document: &Document) -> Vec<Input> {
+    let text = |source: &rad::SourceFile| Input {
+        name: base_name(&source.name),
+        sha256: Sha256::of(source.text.as_bytes()).to_string(),
+    };
+    document.sources.iter().map(text).collect()
+}
+
+/// A file's name without its folder.
+pub(crate) fn base_name(name: &str) -> String {
+    Path::new(name).file_name().map_or_else(|| name.to_owned(), |name| name.to_string_lossy().into_owned())
+}
