@@ -1,5 +1,7 @@
 //! The program `crex` from outside: exit codes, what goes to which stream, what messages say.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot start has failed")]
+
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
