@@ -8,9 +8,6 @@ use super::Alternate;
 use super::arguments::{ArgumentError, Arguments};
 use crate::color::Rgb;
 
-/// Radiance from which on an emitter is a light source; Radiance's FTINY. Dimmer ones are visible but shine on nothing.
-const LEAST_RADIANCE: f64 = 1e-6;
-
 /// A surface that emits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emitter {
@@ -130,11 +127,12 @@ impl Emitter {
         self.kind
     }
 
-    /// Whether it is a source of direct light to any point.
+    /// Whether it is a source of direct light to any point: whatever emits at all, so that a picture scales with its lights. Radiance
+    /// leaves out those of 1e-6 and less.
     #[must_use]
     pub fn illuminates(&self) -> bool {
-        let reaches = !matches!(self.kind, EmitterKind::Glow { radius } if radius <= LEAST_RADIANCE);
-        reaches && self.radiance.max_element() > LEAST_RADIANCE
+        let reaches = !matches!(self.kind, EmitterKind::Glow { radius } if radius <= 0.0);
+        reaches && self.radiance.max_element() > 0.0
     }
 
     /// Radiance that a ray sees which meets the front, travelling along the unit vector `direction`. `blind` rays, which descend

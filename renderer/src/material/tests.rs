@@ -347,9 +347,9 @@ fn emitters_are_seen_by_those_who_have_not_counted_them() {
     assert!(!ambient.illuminates() && seen(&ambient, true, 0.1) == 3.0 && seen(&ambient, false, 0.1) == 3.0);
     let dead = Emitter::glow(&[3.0, 2.0, 1.0, -1.0]).unwrap();
     assert!(!dead.illuminates() && seen(&dead, true, 9.0) == 0.0 && seen(&dead, false, 9.0) == 3.0);
-    // A source as dim as 1e-6 is visible but lights nothing.
-    assert!(!Emitter::light(&[1e-6; 3]).unwrap().illuminates());
-    assert!(Emitter::light(&[0.0, 0.0, 1.1e-6]).unwrap().illuminates());
+    // However dim; but not a black one.
+    assert!(Emitter::light(&[0.0, 0.0, 1e-12]).unwrap().illuminates());
+    assert!(!Emitter::light(&[0.0; 3]).unwrap().illuminates());
     // A spot of 60 degrees shines 30 degrees off its aim at most; rays that look into it travel the other way.
     let spot = Emitter::spotlight(&[1.0, 1.0, 1.0, 60.0, 0.0, 0.0, -2.0]).unwrap();
     let EmitterKind::Spot(cone) = spot.kind() else { panic!("a spot") };
