@@ -1,11 +1,26 @@
-//! What the tracer does next: a crex walked against what the bins hold. Never sees scenes, rays or pixels.
+//! What the tracer does next: a crex walked against what the bins hold, and under a time limit against what rays have
+//! cost so far. Never sees scenes, rays or pixels.
 
+mod budget;
+mod calibration;
 mod clock;
+mod cost;
+mod estimate;
 mod executed;
+mod profile;
+mod profile_file;
 mod rows;
 mod scheduler;
+mod timed;
 
+pub use budget::Budget;
+pub use calibration::{CONFIDENCE, Calibration, FIRST_FACTOR, REMEMBERED};
 pub use clock::{Clock, ManualClock, MonotonicClock};
+pub use cost::{Cost, RayKind};
+pub use estimate::{Estimate, Expected, estimate};
 pub use executed::{Executed, executed};
+pub use profile::{JITTER_S, PRIOR_OBSERVATIONS, PRIOR_SPREAD, Prediction, ProfileCache};
+pub use profile_file::ProfileError;
 pub use rows::{Skipped, StageRow, merge_rows};
 pub use scheduler::Scheduler;
+pub use timed::{LEAST_PROBE, PROBE_SHARE, PROBE_TIME, PROBES, TimedScheduler, TimedWork};

@@ -1,0 +1,156 @@
+//! The profile cache of the paper's section 5.1: what rays of each kind cost on one scene and machine, and how far
+//! predictions from it have been off.
+
+use crate::component::PerComponent;
+
+use super::calibration::Calibration;
+use super::cost::{Cost, RayKind};
+
+/// Seconds by which the operating system may lengthen a task of any size: the least standard deviation of a prediction.
+pub const JITTER_S: f64 = 1e-3;
+
+/// The standard deviation of a cost, as part of its mean, that is assumed before observations say otherwise; it counts
+/// as [`PRIOR_OBSERVATIONS`] of them. The paper's own errors (Table 3) are of this order.
+pub const PRIOR_SPREAD: f64 = 0.25;
+
+/// How many observations [`PRIOR_SPREAD`] counts as.
+pub const PRIOR_OBSERVATIONS: f64 = 2.0;
+
+/// How long a task is expected to take.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Prediction {
+    /// Its mean, in seconds.
+    pub mean_s: f64,
+    /// Its standard deviation, in seconds.
+    pub deviation_s: f64,
+}
+
+impl Prediction {
+    /// Of both one after the other. What makes one late (a busy machine) makes the other late too, so deviations are added
+    /// and not their squares.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self { mean_s: self.mean_s + other.mean_s, deviation_s: self.deviation_s + other.deviation_s }
+    }
+}
+
+/// What rays cost on one scene and machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfileCache {
+    scene: String,
+    machine: String,
+    /// All that is known.
+    known: [Cost; 7],
+    calibration: Calibration,
+    /// What of it was learnt since the cache was read or stored: another run may store in the meantime.
+    fresh: [Cost; 7],
+    fresh_errors: Vec<f64>,
+}
+
+impl ProfileCache {
+    /// An empty cache. `scene` and `machine` say what its costs hold for: a hash of all that the scene was made from, and a
+    /// fingerprint of processor, threads and program. Any text will do; equal means that costs carry over.
+    #[must_use]
+    pub fn new(scene: impl Into<String>, machine: impl Into<String>) -> Self {
+        Self {
+            scene: scene.into(),
+            machine: machine.into(),
+            known: [Cost::default(); 7],
+            calibration: Calibration::default(),
+            fresh: [Cost::default(); 7],
+            fresh_errors: Vec::new(),
+        }
+    }
+
+    /// The scene that the costs hold for.
+    #[must_use]
+    pub fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    /// The machine that the costs hold for.
+    #[must_use]
+    pub fn machine(&self) -> &str {
+        &self.machine
+    }
+
+    /// What is known of a kind of ray; none before the first observation.
+    #[must_use]
+    pub fn cost(&self, kind: RayKind) -> Option<&Cost> {
+        Some(&self.known[kind.index()]).filter(|cost| cost.rays() > 0)
+    }
+
+    /// How far predictions have been off.
+    #[must_use]
+    pub fn calibration(&self) -> &Calibration {
+        &self.calibration
+    }
+
+    /// Takes in that `rays` rays of a kind took `seconds` together and spawned these.
+    pub fn observe(&mut self, kind: RayKind, rays: u64, seconds: f64, spawned: &PerComponent<u64>) {
+        self.known[kind.index()].observe(rays, seconds, spawned);
+        self.fresh[kind.index()].observe(rays, seconds, spawned);
+    }
+
+    /// What `rays` rays of a kind will take; none if nothing is known of that kind.
+    ///
+    /// The deviation is that between observations, shrunk towards [`PRIOR_SPREAD`], widened by the uncertainty of the mean
+    /// itself (1 + 1/n), and at least [`JITTER_S`].
+    #[must_use]
+    pub fn predict(&self, kind: RayKind, rays: u64) -> Option<Prediction> {
+        if rays == 0 {
+            return Some(Prediction::default());
+        }
+        let cost = self.cost(kind)?;
+        let observations = cost.effective_observations();
+        let prior = (PRIOR_SPREAD * cost.mean_s()).powi(2);
+        let variance =
+            (observations * cost.spread_s().powi(2) + PRIOR_OBSERVATIONS * prior) / (observations + PRIOR_OBSERVATIONS);
+        let of_rays = rays as f64 * (variance * (1.0 + 1.0 / observations)).sqrt();
+        Some(Prediction { mean_s: rays as f64 * cost.mean_s(), deviation_s: of_rays.hypot(JITTER_S) })
+    }
+
+    /// The seconds that a predicted task will not exceed with the confidence of
+    /// [`CONFIDENCE`](super::calibration::CONFIDENCE); nothing for a task without rays.
+    #[must_use]
+    pub fn bound_s(&self, prediction: &Prediction) -> f64 {
+        (prediction.mean_s + self.calibration.factor() * prediction.deviation_s).max(0.0)
+    }
+
+    /// Takes in how long a predicted task took.
+    pub fn record(&mut self, prediction: &Prediction, seconds: f64) {
+        let error = (seconds - prediction.mean_s) / prediction.deviation_s;
+        if error.is_finite() {
+            self.calibration.record(error);
+            self.fresh_errors.push(error);
+        }
+    }
+
+    /// Takes in what another cache of the same scene and machine learnt since it was read.
+    pub(super) fn add_fresh(&mut self, other: &Self) {
+        for (kind, fresh) in other.fresh.iter().enumerate() {
+            self.known[kind].add(fresh);
+            self.fresh[kind].add(fresh);
+        }
+        for &error in &other.fresh_errors {
+            self.calibration.record(error);
+            self.fresh_errors.push(error);
+        }
+    }
+
+    /// Sets what is known of a kind, as it was stored.
+    pub(super) fn restore(&mut self, kind: RayKind, cost: Cost) {
+        self.known[kind.index()] = cost;
+    }
+
+    /// Sets how far predictions have been off, as it was stored; the oldest first.
+    pub(super) fn restore_errors(&mut self, errors: impl IntoIterator<Item = f64>) {
+        errors.into_iter().for_each(|error| self.calibration.record(error));
+    }
+
+    /// Forgets which part of what is known is not stored yet: all of it is.
+    pub(super) fn stored(&mut self) {
+        self.fresh = [Cost::default(); 7];
+        self.fresh_errors.clear();
+    }
+}

@@ -1,0 +1,236 @@
+//! The profile cache on disk: JSON that may be read, shared by runs that end at the same time, never half written.
+//!
+//! ```json
+//! {
+//!   "format": "crex profile 1",
+//!   "scene": "<hash of what the scene was made from>",
+//!   "machine": "<processor, threads, program>",
+//!   "rays": {
+//!     "primary": {"rays": 1228800, "observations": 1, "effective": 1.0, "mean_s": 1.1e-6, "spread_s": 0.0,
+//!                 "spawned": {"D": 921600, "T": 30720}},
+//!     "D": ...
+//!   },
+//!   "errors": [-0.4, 1.2]
+//! }
+//! ```
+//! `mean_s` and `spread_s` are seconds a ray, `effective` the number of equal observations that would say as much,
+//! `errors` those of past predictions in deviations, the oldest first. Kinds never observed are absent.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::component::{Component, PerComponent};
+
+use super::calibration::REMEMBERED;
+use super::cost::{Cost, RayKind};
+use super::profile::ProfileCache;
+
+const FORMAT: &str = "crex profile 1";
+
+/// How often and how long to wait for another run that is storing: a second in all.
+const PATIENCE: (u32, Duration) = (100, Duration::from_millis(10));
+
+/// Why a profile could not be read or stored.
+#[derive(Debug, Error)]
+pub enum ProfileError {
+    /// The file system refused.
+    #[error("{path}: {source}")]
+    Io {
+        /// Which file.
+        path: PathBuf,
+        /// What it said.
+        source: io::Error,
+    },
+    /// It is not a profile.
+    #[error("{path}:{line}:{column}: not a profile: {message}; delete it, and the next run makes a new one")]
+    Broken {
+        /// Which file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// The column, from 1.
+        column: usize,
+        /// What was expected.
+        message: String,
+    },
+    /// Its costs are those of something else.
+    #[error("{path} was measured for {what} {found:?}, not {expected:?}: name another file, or delete this one")]
+    Other {
+        /// Which file.
+        path: PathBuf,
+        /// Scene, machine or format.
+        what: &'static str,
+        /// What the file says.
+        found: String,
+        /// What this run is.
+        expected: String,
+    },
+    /// Another run keeps the file locked.
+    #[error("{path} has been locked by another run for more than a second")]
+    Locked {
+        /// The lock's file.
+        path: PathBuf,
+    },
+}
+
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    format: String,
+    scene: String,
+    machine: String,
+    rays: BTreeMap<String, StoredCost>,
+    errors: Vec<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct StoredCost {
+    rays: u64,
+    observations: u64,
+    effective: f64,
+    mean_s: f64,
+    spread_s: f64,
+    spawned: BTreeMap<char, u64>,
+}
+
+impl ProfileCache {
+    /// Reads the profile of a scene and machine; an empty one if there is no such file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is not a profile, or is one of another scene or machine.
+    pub fn load(path: &Path, scene: &str, machine: &str) -> Result<Self, ProfileError> {
+        match fs::read_to_string(path) {
+            Ok(text) => from_json(&text, path, scene, machine),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::new(scene, machine)),
+            Err(source) => Err(ProfileError::Io { path: path.to_owned(), source }),
+        }
+    }
+
+    /// Stores what was learnt since the cache was read or last stored, together with what other runs have stored
+    /// meanwhile; the cache then holds both.
+    ///
+    /// The new file is written beside the old one and takes its name when it is complete. Runs wait for each other by a
+    /// lock on a file beside it (`.lock`), which the system lifts when a run dies.
+    ///
+    /// # Errors
+    /// As [`Self::load`]; if it cannot be written; if another run keeps it locked for more than a second. What is on disk
+    /// is then as it was.
+    pub fn save(&mut self, path: &Path) -> Result<(), ProfileError> {
+        let lock = lock(&beside(path, ".lock"))?;
+        let mut all = Self::load(path, self.scene(), self.machine())?;
+        all.add_fresh(self);
+        let temporary = beside(path, ".part");
+        let io_error = |source| ProfileError::Io { path: temporary.clone(), source };
+        let mut file = File::create(&temporary).map_err(io_error)?;
+        file.write_all(to_json(&all).as_bytes()).and_then(|()| file.sync_all()).map_err(io_error)?;
+        fs::rename(&temporary, path).map_err(|source| ProfileError::Io { path: path.to_owned(), source })?;
+        drop(lock);
+        all.stored();
+        *self = all;
+        Ok(())
+    }
+}
+
+/// The file's name with `ending` appended.
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = OsString::from(path);
+    name.push(ending);
+    name.into()
+}
+
+/// Locks a file until it is dropped.
+fn lock(path: &Path) -> Result<File, ProfileError> {
+    let io_error = |source| ProfileError::Io { path: path.to_owned(), source };
+    let file = OpenOptions::new().create(true).truncate(false).write(true).open(path).map_err(io_error)?;
+    let (times, pause) = PATIENCE;
+    for _ in 0..times {
+        match file.try_lock() {
+            Ok(()) => return Ok(file),
+            Err(TryLockError::WouldBlock) => sleep(pause),
+            Err(TryLockError::Error(source)) => return Err(io_error(source)),
+        }
+    }
+    Err(ProfileError::Locked { path: path.to_owned() })
+}
+
+/// What a kind of ray is called in the file.
+fn name(kind: RayKind) -> String {
+    match kind {
+        RayKind::Primary => "primary".to_owned(),
+        RayKind::Of(component) => component.to_string(),
+    }
+}
+
+fn to_json(cache: &ProfileCache) -> String {
+    let costs = RayKind::ALL.into_iter().filter_map(|kind| Some((kind, cache.cost(kind)?)));
+    let stored = Stored {
+        format: FORMAT.to_owned(),
+        scene: cache.scene().to_owned(),
+        machine: cache.machine().to_owned(),
+        rays: costs
+            .map(|(kind, cost)| {
+                let spawned = cost.spawned().iter().filter(|(_, count)| **count > 0);
+                let stored = StoredCost {
+                    rays: cost.rays(),
+                    observations: cost.observations(),
+                    effective: cost.effective_observations(),
+                    mean_s: cost.mean_s(),
+                    spread_s: cost.spread_s(),
+                    spawned: spawned.map(|(component, count)| (component.letter(), *count)).collect(),
+                };
+                (name(kind), stored)
+            })
+            .collect(),
+        errors: cache.calibration().errors().collect(),
+    };
+    let mut text = serde_json::to_string_pretty(&stored).expect("text keys and finite numbers are JSON");
+    text.push('\n');
+    text
+}
+
+fn from_json(text: &str, path: &Path, scene: &str, machine: &str) -> Result<ProfileCache, ProfileError> {
+    let broken = |line, column, message: String| ProfileError::Broken { path: path.to_owned(), line, column, message };
+    let stored: Stored =
+        serde_json::from_str(text).map_err(|error| broken(error.line(), error.column(), error.to_string()))?;
+    for (what, found, expected) in
+        [("format", &stored.format, FORMAT), ("scene", &stored.scene, scene), ("machine", &stored.machine, machine)]
+    {
+        if found != expected {
+            let (found, expected) = (found.clone(), expected.to_owned());
+            return Err(ProfileError::Other { path: path.to_owned(), what, found, expected });
+        }
+    }
+    let mut cache = ProfileCache::new(scene, machine);
+    for (key, cost) in stored.rays {
+        let at = || {
+            let quoted = format!("\"{key}\"");
+            let line = text.lines().position(|line| line.contains(&quoted)).unwrap_or(0);
+            (line + 1, text.lines().nth(line).and_then(|line| line.find(&quoted)).unwrap_or(0) + 1)
+        };
+        let refuse = |message: &str| {
+            let (line, column) = at();
+            broken(line, column, message.to_owned())
+        };
+        let kind = RayKind::ALL.into_iter().find(|kind| name(*kind) == key);
+        let kind = kind.ok_or_else(|| refuse("expected primary or one of the components D S G T R M"))?;
+        let mut spawned = PerComponent::default();
+        for (letter, count) in cost.spawned {
+            let component = Component::from_letter(letter);
+            let component = component.ok_or_else(|| refuse("expected spawned rays of D S G T R M only"))?;
+            spawned[component] = count;
+        }
+        let cost = Cost::from_parts(cost.rays, cost.observations, cost.mean_s, cost.spread_s, cost.effective, spawned);
+        let cost = cost.ok_or_else(|| refuse("expected rays, observations and seconds of at least 0"))?;
+        cache.restore(kind, cost);
+    }
+    let skip = stored.errors.len().saturating_sub(REMEMBERED);
+    cache.restore_errors(stored.errors.into_iter().skip(skip));
+    Ok(cache)
+}

@@ -1,0 +1,261 @@
+//! A crex's walk under a time limit: every task is predicted first, and runs whole or is skipped.
+
+use crate::component::{Component, PerComponent};
+use crate::crex::{Cursor, Program, Span, Task, ThresholdError};
+use crate::work::{BinOccupancy, Stage, Work, WorkReport};
+
+use super::budget::Budget;
+use super::cost::RayKind;
+use super::profile::{Prediction, ProfileCache};
+use super::rows::{Skipped, StageRow};
+
+/// The part of a bin that is traced to learn what its rays cost: the paper's 1 %.
+pub const PROBE_SHARE: f64 = 0.01;
+
+/// Probes into which that part is cut, so that their spread shows.
+pub const PROBES: u32 = 4;
+
+/// Rays of a probe, at least: fewer tell more about the clock than about the rays.
+pub const LEAST_PROBE: u64 = 32;
+
+/// The part of the time left that a probe may take if its rays cost as much as the costliest kind known.
+pub const PROBE_TIME: f64 = 0.01;
+
+/// What the tracer is to do next under a time limit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TimedWork {
+    /// Trace this many rays, drawn as if at random from the visible rays of a component's bin that the threshold admits,
+    /// and set them and all that they find aside. They are not in the bin any more.
+    Probe {
+        /// Whose bin.
+        component: Component,
+        /// Only rays of pixels with at least this importance.
+        threshold: Option<f32>,
+        /// How many.
+        rays: u64,
+    },
+    /// Forget what was set aside: its rays go back to their bins, and nothing that they found remains.
+    Discard,
+    /// Trace what the stage admits of its component's bin. What was set aside for this component now belongs to the
+    /// stage: its light to the picture, its children where the stage's go.
+    Run(Stage),
+    /// As [`Work::Release`].
+    Release,
+}
+
+/// How far the task is that the cursor stands before or in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    /// It may need probes before it can be decided.
+    Weighing,
+    /// It is to run or to be skipped, and has not begun.
+    Decided { runs: bool },
+    /// It has begun.
+    Under { runs: bool },
+}
+
+/// What a call of [`TimedScheduler::report`] will be about.
+#[derive(Clone, Debug)]
+enum Pending {
+    Probe(Component),
+    Run(Stage),
+}
+
+/// Decides what the tracer does next within a [`Budget`], and keeps a row of every stage, run or skipped.
+///
+/// Every single run of a component outside `[ ]`, and every outermost `[ ]`, is one task. A task runs if the time left is
+/// no less than the bound of its prediction; else it is skipped, its rays stay in their bins, and the next task is
+/// considered. A component of which nothing is known is probed first: a part of its bin is traced, and kept only if the
+/// task runs.
+///
+/// Call [`next`](Self::next), do the work, give [`report`](Self::report) what a probe or run did, again. Time between the
+/// two calls is what the work is taken to have cost, by the budget's clock. A decision looks at seven numbers and at no
+/// ray.
+#[derive(Debug)]
+pub struct TimedScheduler<'a> {
+    cursor: Cursor<'a>,
+    budget: Budget<'a>,
+    profile: &'a mut ProfileCache,
+    rows: Vec<StageRow>,
+    phase: Phase,
+    /// What the task was predicted to take from when it was decided on, if it could be.
+    prediction: Option<Prediction>,
+    /// Seconds that its runs have taken since.
+    taken_s: f64,
+    /// Probes for it: how many, and what those not yet kept did.
+    probes: PerComponent<(u32, WorkReport)>,
+    /// Seconds that its probes took.
+    probed_s: f64,
+    /// What was handed out and when, not yet reported.
+    pending: Option<(Pending, f64)>,
+}
+
+impl<'a> TimedScheduler<'a> {
+    /// A walk along `program` within `budget`, that predicts by `profile` and teaches it. `thresholds` as for
+    /// [`Scheduler`](super::Scheduler).
+    ///
+    /// # Errors
+    /// As [`Program::check_thresholds`].
+    pub fn new(
+        program: &'a Program,
+        thresholds: Option<&[f32]>,
+        budget: Budget<'a>,
+        profile: &'a mut ProfileCache,
+    ) -> Result<Self, ThresholdError> {
+        let mut cursor = Cursor::new(program);
+        if let Some(thresholds) = thresholds {
+            cursor = cursor.with_thresholds(thresholds)?;
+        }
+        Ok(Self {
+            cursor,
+            budget,
+            profile,
+            rows: Vec::new(),
+            phase: Phase::Under { runs: true },
+            prediction: None,
+            taken_s: 0.0,
+            probes: PerComponent::default(),
+            probed_s: 0.0,
+            pending: None,
+        })
+    }
+
+    /// What to do next; none when the crex has ended. `admitted` counts the visible rays in each bin, of pixels of at least
+    /// an importance if one is given; rays set aside are not counted.
+    pub fn next(&mut self, admitted: impl Fn(Option<f32>) -> BinOccupancy) -> Option<TimedWork> {
+        loop {
+            if !matches!(self.phase, Phase::Decided { .. })
+                && let Some(task) = self.cursor.task()
+            {
+                if matches!(self.phase, Phase::Under { .. }) {
+                    self.end_task();
+                }
+                let bins = admitted(task.threshold);
+                if let Some(probe) = self.probe(&task, &bins) {
+                    return Some(probe);
+                }
+                let runs = self.decide(&task, &bins);
+                self.phase = Phase::Decided { runs };
+                if !runs && self.probes.iter().any(|(_, (times, _))| *times > 0) {
+                    return Some(TimedWork::Discard);
+                }
+            }
+            if let Phase::Decided { runs } = self.phase {
+                self.phase = Phase::Under { runs };
+            }
+            let Some(work) = self.cursor.next() else {
+                self.end_task();
+                return None;
+            };
+            match work {
+                Work::Release => return Some(TimedWork::Release),
+                Work::Run(stage) if self.phase == (Phase::Under { runs: true }) => {
+                    self.pending = Some((Pending::Run(stage.clone()), self.budget.now_s()));
+                    return Some(TimedWork::Run(stage));
+                }
+                Work::Run(stage) => {
+                    self.cursor.report(0);
+                    let predicted_s = self.prediction.map(|prediction| prediction.mean_s);
+                    let report = WorkReport::default();
+                    self.rows.push(StageRow { stage, report, predicted_s, skipped: Some(Skipped::Time) });
+                }
+            }
+        }
+    }
+
+    /// What the last [`TimedWork::Probe`] or [`TimedWork::Run`] did: rays that it traced now, not those set aside before.
+    /// The seconds are not looked at.
+    pub fn report(&mut self, report: &WorkReport) {
+        let Some((pending, since_s)) = self.pending.take() else {
+            return;
+        };
+        let mut report = WorkReport { seconds: self.budget.now_s() - since_s, ..*report };
+        match pending {
+            Pending::Probe(component) => {
+                self.learn(component, &report);
+                let (times, sum) = &mut self.probes[component];
+                *times += 1;
+                add(sum, &report);
+                self.probed_s += report.seconds;
+            }
+            Pending::Run(stage) => {
+                self.learn(stage.component, &report);
+                self.taken_s += report.seconds;
+                let predicted_s = self.prediction.map(|prediction| prediction.mean_s + self.probed_s);
+                // What the probes did is the stage's now, and counted once.
+                let (_, kept) = &mut self.probes[stage.component];
+                add(&mut report, &std::mem::take(kept));
+                self.cursor.report(report.rays);
+                self.rows.push(StageRow { stage, report, predicted_s, skipped: None });
+            }
+        }
+    }
+
+    /// As [`Scheduler::stopped`](super::Scheduler::stopped).
+    #[must_use]
+    pub fn stopped(&self) -> &[Span] {
+        self.cursor.stopped()
+    }
+
+    /// The rows of all stages so far, in the order in which they ran or were skipped; seconds by the budget's clock.
+    #[must_use]
+    pub fn into_rows(self) -> Vec<StageRow> {
+        self.rows
+    }
+
+    fn learn(&mut self, component: Component, report: &WorkReport) {
+        self.profile.observe(RayKind::Of(component), report.rays, report.seconds, &report.spawned);
+    }
+
+    /// A probe that the task needs before it can be predicted.
+    fn probe(&mut self, task: &Task, bins: &BinOccupancy) -> Option<TimedWork> {
+        let left_s = self.budget.left_s();
+        let component = task.components.iter().find(|&component| {
+            let (times, _) = self.probes[component];
+            let unknown = times > 0 || self.profile.cost(RayKind::Of(component)).is_none();
+            unknown && times < PROBES && bins[component] > 0 && left_s > 0.0
+        })?;
+        let costs = RayKind::ALL.into_iter().filter_map(|kind| self.profile.cost(kind));
+        let costliest_s = costs.map(super::cost::Cost::mean_s).fold(0.0, f64::max);
+        let affordable = (PROBE_TIME * left_s / costliest_s).max(1.0);
+        let share = (bins[component] as f64 * PROBE_SHARE / f64::from(PROBES)).ceil().max(LEAST_PROBE as f64);
+        let rays = (share.min(affordable) as u64).min(bins[component]);
+        self.pending = Some((Pending::Probe(component), self.budget.now_s()));
+        Some(TimedWork::Probe { component, threshold: task.threshold, rays })
+    }
+
+    /// Whether the task runs.
+    fn decide(&mut self, task: &Task, bins: &BinOccupancy) -> bool {
+        let mut whole = Some(Prediction::default());
+        for component in task.components.iter() {
+            let part = self.profile.predict(RayKind::Of(component), bins[component]);
+            whole = whole.zip(part).map(|(whole, part)| whole.and(part));
+        }
+        self.prediction = whole;
+        let nothing_to_do = task.components.iter().all(|component| bins[component] == 0);
+        let left_s = self.budget.left_s();
+        nothing_to_do || whole.is_some_and(|whole| self.profile.bound_s(&whole) <= left_s)
+    }
+
+    /// Learns how far the last task's prediction was off, and makes room for the next task.
+    fn end_task(&mut self) {
+        if let Some(prediction) = self.prediction.take()
+            && self.phase == (Phase::Under { runs: true })
+            && prediction.mean_s > 0.0
+        {
+            self.profile.record(&prediction, self.taken_s);
+        }
+        self.phase = Phase::Weighing;
+        self.taken_s = 0.0;
+        self.probes = PerComponent::default();
+        self.probed_s = 0.0;
+    }
+}
+
+fn add(sum: &mut WorkReport, report: &WorkReport) {
+    sum.rays += report.rays;
+    sum.seconds += report.seconds;
+    for (component, count) in sum.spawned.iter_mut() {
+        *count += report.spawned[component];
+    }
+}
