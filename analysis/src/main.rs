@@ -10,7 +10,7 @@ use analysis::report::{self, Options, Report};
 use analysis::tally::ArmTally;
 use clap::Parser;
 
-/// Computes what session logs show, and writes it as HTML, Markdown or JSON.
+/// Computes what session logs show, and writes it as HTML, Markdown, JSON or CSV.
 #[derive(Parser)]
 #[command(name = "crex-report", version)]
 struct Arguments {
@@ -18,7 +18,8 @@ struct Arguments {
     #[arg(value_name = "LOG", required_unless_present = "counts", conflicts_with = "counts")]
     logs: Vec<PathBuf>,
 
-    /// Where to write; the format is the ending: .html, .md or .json. May be given several times
+    /// Where to write; the format is the ending: .html, .md, .json, or .csv for a table of every
+    /// number. May be given several times
     #[arg(short, value_name = "OUT")]
     out: Vec<PathBuf>,
 
@@ -83,7 +84,10 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     for out in &arguments.out {
         if format_of(out).is_none() {
-            return Err(Failure::Input(format!("-o {}: expected an ending of .html, .md or .json", out.display())));
+            return Err(Failure::Input(format!(
+                "-o {}: expected an ending of .html, .md, .json or .csv",
+                out.display()
+            )));
         }
     }
     let plan = arguments.stimuli.as_deref().map(read_plan).transpose()?;
@@ -136,6 +140,7 @@ fn format_of(out: &Path) -> Option<fn(&Report) -> String> {
         "html" => Some(Report::to_html),
         "md" => Some(Report::to_markdown),
         "json" => Some(Report::to_json),
+        "csv" => Some(Report::to_csv),
         _ => None,
     }
 }

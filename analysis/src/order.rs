@@ -218,6 +218,19 @@ mod tests {
         }
     }
 
+    /// p values by an independent optimiser (scipy 1.17, `minimize_scalar` over the bias).
+    #[test]
+    fn p_values_agree_with_another_optimiser() {
+        for (table, p) in [
+            (table(5, 8, 4, 8), 0.125_534_497_778_503),
+            (table(20, 22, 18, 22), 0.106_305_316_745_976),
+            (table(50, 100, 50, 100), 1.761_737_909_433e-9),
+        ] {
+            let found = CorrectedTost::new(&table, 0.2, 0.05).unwrap().p;
+            assert!((found / p - 1.0).abs() < 1e-8, "{found} {p}");
+        }
+    }
+
     #[test]
     fn one_interval_always_chosen_shows_nothing() {
         for table in [table(8, 8, 8, 8), table(0, 8, 0, 8)] {

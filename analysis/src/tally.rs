@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::counting::{Errors, counts_of};
 use crate::proportion::Proportion;
 use crate::sessions::Session;
 use crate::trial_log::{Interval, Trial};
@@ -43,6 +44,14 @@ pub struct ArmTally {
     pub layouts: BTreeMap<[String; 2], Proportion>,
     /// Right answers by the layout that was of the lower quality.
     pub correct_by_layout: BTreeMap<String, Proportion>,
+    /// Right answers by stated confidence.
+    pub confidence: BTreeMap<u8, Proportion>,
+    /// Counting, by quality.
+    pub counting: BTreeMap<String, Errors>,
+    /// People who were shown the obvious pair, and how many of them told it.
+    pub check: Proportion,
+    /// People who had informed trials with a right answer, with the sum of their own shares of right answers.
+    pub informed: (u64, f64),
 }
 
 impl ArmTally {
@@ -80,6 +89,29 @@ impl ArmTally {
             };
             half.count(second);
             self.correct_by_layout.entry(layout.clone()).or_default().count(correct);
+            if let Some(confidence) = trial.confidence {
+                self.confidence.entry(confidence).or_default().count(correct);
+            }
+        }
+        for (quality, truth, answer) in counts_of(trial) {
+            match self.counting.get_mut(quality) {
+                Some(errors) => errors.add(truth, answer),
+                None => self.counting.entry(quality.to_owned()).or_default().add(truth, answer),
+            }
+        }
+    }
+
+    /// Counts a session: its critical trial, and what came after it.
+    fn add_session(&mut self, session: &Session) {
+        if let Some(trial) = &session.critical {
+            self.add(trial);
+        }
+        if let Some(told) = session.check {
+            self.check.count(told);
+        }
+        if let Some(share) = session.informed.value() {
+            self.informed.0 += 1;
+            self.informed.1 += share;
         }
     }
 }
@@ -92,10 +124,10 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Counts a session's critical trial, if it has an answered one.
+    /// Counts a session, if it has an answered critical trial.
     pub fn add(&mut self, session: &Session) {
-        if let Some(trial) = &session.critical {
-            self.arm(&session.arm).add(trial);
+        if session.critical.is_some() {
+            self.arm(&session.arm).add_session(session);
         }
     }
 

@@ -1,130 +1,150 @@
-//! The report as a web page.
+//! The report as a web page: one file, no script, no network, both themes, printable.
 
 use std::fmt::Write;
 
-use super::numbers::{p_value, percent, short};
-use super::{ArmReport, Report, Tests};
+use super::Stimulus;
+use super::document::{Block, Table};
+use super::numbers::{grouped, short};
+use super::plot::Figure;
+use super::words::Finding;
 
-const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:70rem;margin:2rem auto;padding:0 1rem}\
-table{border-collapse:collapse}th,td{padding:.3rem .7rem;border-bottom:1px solid #888;text-align:left}\
-code{overflow-wrap:anywhere}";
-
-pub(super) fn write(report: &Report) -> String {
-    let title = escape(&report.title());
+pub(super) fn write(blocks: &[Block]) -> String {
+    let title = blocks.iter().find_map(|block| match block {
+        Block::Title(title) => Some(escape(title)),
+        _ => None,
+    });
+    let title = title.unwrap_or_default();
+    let style = include_str!("style.css");
     let mut out = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n"
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n<title>{title}</title>\n\
+         <style>\n{style}</style>\n</head>\n<body>\n<main>\n"
     );
-    if report.simulated {
-        out += "<p><strong>Simulated observers answered: these are not data of people.</strong></p>\n";
+    for block in blocks {
+        write_block(&mut out, block);
     }
-    if report.demo {
-        out += "<p><strong>A demonstration, not a study.</strong></p>\n";
+    out + "</main>\n</body>\n</html>\n"
+}
+
+fn write_block(out: &mut String, block: &Block) {
+    let _ = match block {
+        Block::Title(text) => writeln!(out, "<h1>{}</h1>", escape(text)),
+        Block::Banner(text) => writeln!(out, "<p class=\"banner\"><strong>{}</strong></p>", escape(text)),
+        Block::Verdict(arm, finding, sentence) => writeln!(
+            out,
+            "<section class=\"verdict {}\" aria-label=\"Verdict on {}\"><p class=\"arm\">{}</p><p>{}</p></section>",
+            class(*finding),
+            escape(arm),
+            escape(arm),
+            escape(sentence)
+        ),
+        Block::Heading(level, text) => writeln!(out, "<h{level}>{}</h{level}>", escape(text)),
+        Block::Text(text) => writeln!(out, "<p>{}</p>", escape(text)),
+        Block::List(items) => {
+            let items: Vec<String> = items.iter().map(|item| format!("<li>{}</li>", escape(item))).collect();
+            writeln!(out, "<ul>\n{}\n</ul>", items.join("\n"))
+        }
+        Block::Facts(facts) => {
+            let pair =
+                |(name, value): &(String, String)| format!("<dt>{}</dt><dd>{}</dd>", escape(name), escape(value));
+            writeln!(out, "<dl>\n{}\n</dl>", facts.iter().map(pair).collect::<Vec<_>>().join("\n"))
+        }
+        Block::Table(table) => writeln!(out, "{}", table_of(table)),
+        Block::Figures(figures) => {
+            let class = if figures.len() > 1 { "figures several" } else { "figures" };
+            let figures: Vec<String> = figures.iter().map(figure).collect();
+            writeln!(out, "<div class=\"{class}\">\n{}\n</div>", figures.join("\n"))
+        }
+        Block::Stimuli(stimuli) => {
+            let cards: Vec<String> = stimuli.iter().map(card).collect();
+            writeln!(out, "<div class=\"stimuli\">\n{}\n</div>", cards.join("\n"))
+        }
+    };
+}
+
+fn class(finding: Finding) -> &'static str {
+    match finding {
+        Finding::NoData | Finding::NoRightAnswer => "plain",
+        Finding::Noticed | Finding::Reversed => "noticed",
+        Finding::NoticedWithinBound | Finding::ReversedWithinBound | Finding::Equivalent => "equivalent",
+        Finding::Undecided => "undecided",
     }
-    for arm in &report.arms {
-        let _ = writeln!(out, "<p><strong>{}</strong>: {}</p>", escape(&arm.arm), escape(&arm.verdict.sentence));
-    }
-    out += "<h2>Arms</h2>\n";
-    arms(&mut out, &report.arms);
-    list(&mut out, report.arms.iter().flat_map(|arm| arm.notes.iter().map(move |note| format!("{}: {note}", arm.arm))));
-    out += "<h2>Exclusions</h2>\n";
-    if report.provenance.logs.is_empty() {
-        out += "<p>Counts were given, not trials: nothing could be left out.</p>\n";
+}
+
+fn figure(figure: &Figure) -> String {
+    format!(
+        "<figure>{}<figcaption>{} <span class=\"hidden\">{}</span></figcaption></figure>",
+        figure.svg,
+        escape(&figure.caption),
+        escape(&figure.description)
+    )
+}
+
+fn table_of(table: &Table) -> String {
+    let caption = escape(&table.caption);
+    let head: Vec<String> =
+        table.columns.iter().map(|name| format!("<th scope=\"col\">{}</th>", escape(name))).collect();
+    let body: Vec<String> = table
+        .rows
+        .iter()
+        .map(|row| {
+            let cells: Vec<String> = row
+                .iter()
+                .enumerate()
+                .map(|(at, cell)| match at {
+                    0 => format!("<th scope=\"row\">{}</th>", escape(cell)),
+                    _ => format!("<td>{}</td>", escape(cell)),
+                })
+                .collect();
+            format!("<tr>{}</tr>", cells.concat())
+        })
+        .collect();
+    format!(
+        "<div class=\"scroll\" role=\"region\" aria-label=\"{caption}\" tabindex=\"0\"><table>\n<caption>{caption}</caption>\n\
+         <thead><tr>{}</tr></thead>\n<tbody>\n{}\n</tbody>\n</table></div>",
+        head.concat(),
+        body.join("\n")
+    )
+}
+
+fn card(stimulus: &Stimulus) -> String {
+    let picture = stimulus.thumbnail.as_ref().map_or_else(
+        || "<p class=\"missing\">picture not found</p>".to_owned(),
+        |png| {
+            format!(
+                "<img src=\"data:image/png;base64,{}\" alt=\"{}: layout {}, quality {}\">",
+                base64(png),
+                escape(&stimulus.id),
+                escape(&stimulus.layout),
+                escape(&stimulus.quality)
+            )
+        },
+    );
+    let crex = if stimulus.crex.is_empty() {
+        "direct light alone".to_owned()
     } else {
-        let _ = writeln!(out, "<p>{} sessions, {} analysed.</p>", report.flow.sessions, report.flow.analysed);
-        let reasons = report.flow.excluded.iter();
-        list(&mut out, reasons.map(|(reason, count)| format!("{count} left out because {}", reason.words())));
-        if !report.exclusions.is_empty() {
-            out += "<h3>With every answered trial</h3>\n";
-            arms(&mut out, &report.without_exclusions);
-        }
-    }
-    out += "<h2>Plan</h2>\n";
-    if report.deviations.is_empty() {
-        out += "<p>The analysis plan is the one that every log recorded before its first trial.</p>\n";
-    }
-    list(&mut out, report.deviations.iter().cloned());
-    out += "<h2>Provenance</h2>\n<dl>\n";
-    for (name, value) in provenance(report) {
-        let _ = writeln!(out, "<dt>{}</dt><dd><code>{}</code></dd>", escape(&name), escape(&value));
-    }
-    out + "</dl>\n</main>\n</body>\n</html>\n"
+        format!("<code>{}</code>", escape(&stimulus.crex))
+    };
+    format!(
+        "<figure class=\"card\">{picture}<figcaption><strong>{}</strong> {crex}<br>{}</figcaption></figure>",
+        escape(&stimulus.id),
+        escape(&cost(stimulus))
+    )
 }
 
-/// Names and values of what the numbers come from.
-pub(super) fn provenance(report: &Report) -> Vec<(String, String)> {
-    let from = &report.provenance;
-    let mut rows = Vec::new();
-    for log in &from.logs {
-        rows.push((format!("log {} ({} rows), SHA-256", log.file, log.rows), log.sha256.clone()));
-    }
-    rows.extend(from.counts.iter().map(|counts| ("counts as typed".to_owned(), counts.clone())));
-    let hashes = [
-        ("allocation plan, SHA-256", &from.plan_hash),
-        ("stimuli manifest, SHA-256", &from.stimuli_hash),
-        ("analysis plan, SHA-256", &from.analysis_plan_hash),
-    ];
-    for (name, hash) in hashes {
-        if let Some(hash) = hash {
-            rows.push((name.to_owned(), hash.clone()));
-        }
-    }
-    if let Some([first, last]) = &from.started_utc {
-        rows.push(("first and last session".to_owned(), format!("{first}, {last}")));
-    }
-    if !from.session_versions.is_empty() {
-        rows.push(("session program".to_owned(), from.session_versions.join(", ")));
-    }
-    rows.push(("report program".to_owned(), from.report_version.clone()));
-    rows
-}
-
-fn list(out: &mut String, items: impl Iterator<Item = String>) {
-    let items: Vec<String> = items.map(|item| format!("<li>{}</li>", escape(&item))).collect();
-    if !items.is_empty() {
-        let _ = writeln!(out, "<ul>{}</ul>", items.join("\n"));
-    }
-}
-
-fn arms(out: &mut String, arms: &[ArmReport]) {
-    out.push_str(
-        "<table>\n<thead><tr><th>arm<th>counted<th>k of n<th>share<th>chi-square (df)<th>p<th>exact p\
-         <th>Clopper-Pearson<th>Wilson</tr></thead>\n<tbody>\n",
-    );
-    for arm in arms {
-        if let Some(correct) = arm.correct {
-            row(out, &arm.arm, "right answers", correct, arm.n, &arm.tests);
-        }
-        if let Some(second) = &arm.second_chosen {
-            row(out, &arm.arm, "second interval chosen", second.k, second.n, &second.tests);
-        }
-        for layout in &arm.layout_chosen {
-            let what = format!("layout {} chosen, not {}", layout.layout, layout.other);
-            row(out, &arm.arm, &what, layout.chosen.k, layout.chosen.n, &layout.chosen.tests);
-        }
-    }
-    out.push_str("</tbody>\n</table>\n");
-}
-
-fn row(out: &mut String, arm: &str, what: &str, k: u64, n: u64, tests: &Tests) {
-    let share = if n == 0 { String::new() } else { percent(k as f64 / n as f64) };
-    let chi = tests.chi_square.map(|chi| format!("{} ({})", short(chi.statistic), chi.df)).unwrap_or_default();
-    let chi_p = tests.chi_square.map(|chi| p_value(chi.p, chi.log10_p)).unwrap_or_default();
-    let exact = tests.binomial.map(|exact| p_value(exact.p, exact.log10_p)).unwrap_or_default();
-    let range = |range: Option<[f64; 2]>| range.map(|[low, high]| format!("[{low:.3}, {high:.3}]")).unwrap_or_default();
-    let clopper_pearson = range(tests.intervals.map(|intervals| intervals.clopper_pearson));
-    let wilson = range(tests.intervals.map(|intervals| intervals.wilson));
-    let _ = writeln!(
-        out,
-        "<tr><th scope=\"row\">{}<td>{}<td>{k} of {n}<td>{share}<td>{chi}<td>{chi_p}<td>{exact}<td>{clopper_pearson}<td>{wilson}</tr>",
-        escape(arm),
-        escape(what)
-    );
+/// What making a picture cost, in words.
+pub(super) fn cost(stimulus: &Stimulus) -> String {
+    let rays: u64 = stimulus.rays.iter().map(|(_, rays)| rays).sum();
+    let time = stimulus.cost.map(|(seconds, threads)| {
+        let threads = if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
+        format!(", {} s on {threads}", short(seconds))
+    });
+    format!("{} rays{}", grouped(rays), time.unwrap_or_default())
 }
 
 /// Text that is only text in HTML.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
@@ -137,4 +157,44 @@ fn escape(text: &str) -> String {
         }
     }
     out
+}
+
+/// Base 64 (RFC 4648, section 4).
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let word = chunk.iter().fold(0_u32, |word, &byte| word << 8 | u32::from(byte)) << (8 * (3 - chunk.len()));
+        for at in 0..4 {
+            let letter = LETTERS[(word >> (18 - 6 * at) & 63) as usize];
+            out.push(if at <= chunk.len() { char::from(letter) } else { '=' });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// RFC 4648, section 10.
+    #[test]
+    fn base64_of_the_standard_s_examples() {
+        for (text, coded) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(text.as_bytes()), coded);
+        }
+    }
+
+    #[test]
+    fn markup_is_text() {
+        assert_eq!(escape("<a href='x'>&\""), "&lt;a href=&#39;x&#39;&gt;&amp;&quot;");
+    }
 }

@@ -10,8 +10,10 @@ pub fn p_value(p: f64, log10: f64) -> String {
         format!("{p:.4}")
     } else if p >= 1e-300 {
         format!("{p:.2e}")
-    } else {
+    } else if log10.is_finite() {
         format!("10^{log10:.1}")
+    } else {
+        "below 1e-300".to_owned()
     }
 }
 
@@ -80,6 +82,7 @@ mod tests {
         assert_eq!(p_value(1.0, 0.0), "1");
         assert_eq!(p_value(3.21e-9, -8.5), "3.21e-9");
         assert_eq!(p_value(0.0, -436.043), "10^-436.0");
+        assert_eq!(p_value(0.0, f64::NEG_INFINITY), "below 1e-300");
     }
 
     #[test]
