@@ -71,3 +71,84 @@ pub(super) fn jod(
     let map = Raster::from_values(width, height, map).unwrap_or_else(|| Raster::filled(width, height, 0.0));
     Ok(Jod { jod: f64::from(prediction.jod), map })
 }
+
+/// Agreement with the authors' own programs. The numbers were made once with PyPI's `flip-evaluator` 1.7 (`evaluate(reference,
+/// test, "LDR", parameters={"ppd": 39.75127})`) and `cvvdp` 0.5.7 (250 cd/m2, contrast 500, 50 lux, 1 % reflected, the geometry
+/// below) on the pictures that [`pictures`](tests::pictures) makes by the same whole-number formulas.
+#[cfg(test)]
+mod tests {
+    use super::super::Provenance;
+    use super::super::display::Transfer;
+    use super::*;
+    use crate::color::srgb_decode;
+    use crate::picture::compare;
+
+    const DISPLAY: Display = Display {
+        peak_cd_m2: 250.0,
+        black_cd_m2: 0.5,
+        ambient_lux: 50.0,
+        reflectivity: 0.01,
+        width_px: 1280,
+        height_px: 1024,
+        width_m: 0.3372,
+        distance_m: 0.6,
+        transfer: Transfer::Srgb,
+    };
+
+    fn picture(code: impl Fn(i32, i32) -> [i32; 3]) -> Picture {
+        let linear = |code: i32| srgb_decode(f64::from(code.clamp(0, 255)) / 255.0) as f32;
+        let pixels = (0..64 * 96).map(|index| code(index % 96, index / 96).map(linear)).collect();
+        let beauty = Raster::from_values(96, 64, pixels).unwrap();
+        Picture { quantity: Quantity::Display, beauty, layers: vec![], provenance: Provenance::default() }
+    }
+
+    /// A reference, a much and a slightly changed picture.
+    fn pictures() -> [Picture; 3] {
+        let reference = |x: i32, y: i32| [x * 255 / 95, y * 255 / 63, (x / 8 + y / 8) % 2 * 180 + 30];
+        let strong = |x: i32, y: i32| {
+            let [red, green, blue] = reference(x, y);
+            let red = red + ((x * 7 + y * 13) % 11 - 5) * 4;
+            let green = if x > 70 { green * 9 / 10 } else { green };
+            let inside = (20..40).contains(&y) && (30..60).contains(&x);
+            [red, green, if inside { blue / 2 } else { blue }]
+        };
+        let weak = |x: i32, y: i32| reference(x, y).map(|code| code + ((x + y) % 3 - 1) * 3);
+        [picture(reference), picture(strong), picture(weak)]
+    }
+
+    #[test]
+    fn flip_is_that_of_its_authors() {
+        let [reference, strong, weak] = pictures();
+        let map = flip(&reference, &strong, &DISPLAY, 1.0).unwrap();
+        assert!((compare::mean(&map) - 0.154_078_7).abs() < 1e-5, "{}", compare::mean(&map));
+        for ((x, y), value) in [((45, 30), 0.448_066), ((80, 5), 0.087_180)] {
+            assert!((map.at(x, y) - value).abs() < 1e-4, "{} at {x} {y}", map.at(x, y));
+        }
+        let map = flip(&reference, &weak, &DISPLAY, 1.0).unwrap();
+        assert!((compare::mean(&map) - 0.021_917_6).abs() < 1e-5, "{}", compare::mean(&map));
+        assert_eq!(compare::mean(&flip(&weak, &weak, &DISPLAY, 1.0).unwrap()), 0.0);
+    }
+
+    #[test]
+    fn jod_is_that_of_its_authors() {
+        let [reference, strong, weak] = pictures();
+        let score = |picture: &Picture| jod(&reference, picture, &DISPLAY, 1.0).unwrap().jod;
+        assert!((score(&strong) - 8.414_714).abs() < 1e-4, "{}", score(&strong));
+        assert!((score(&weak) - 9.983_167).abs() < 1e-4, "{}", score(&weak));
+        assert_eq!(score(&reference), 10.0);
+    }
+
+    /// Radiance is judged as it would be shown.
+    #[test]
+    fn radiance_is_exposed_before_it_is_judged() {
+        let [reference, strong, _] = pictures();
+        let dimmed = |picture: &Picture| {
+            let mut dim = Picture { quantity: Quantity::Radiance, ..picture.clone() };
+            dim.beauty.values_mut().iter_mut().for_each(|pixel| *pixel = pixel.map(|value| value / 8.0));
+            dim
+        };
+        let shown = jod(&reference, &strong, &DISPLAY, 1.0).unwrap().jod;
+        let exposed = jod(&dimmed(&reference), &dimmed(&strong), &DISPLAY, 8.0).unwrap().jod;
+        assert!((shown - exposed).abs() < 1e-4, "{shown} {exposed}");
+    }
+}
