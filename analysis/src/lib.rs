@@ -16,6 +16,7 @@ pub mod equivalence;
 pub mod exclude;
 pub mod interval;
 pub mod order;
+pub mod pictures;
 pub mod plan;
 pub mod power;
 pub mod proportion;

@@ -35,7 +35,8 @@ struct Arguments {
     #[arg(long, value_name = "ARM", requires = "counts")]
     no_right_answer: Vec<String>,
 
-    /// The study's folder or study file: its analysis plan decides level, equivalence bound and exclusions
+    /// The study's folder: its analysis plan decides level, equivalence bound and exclusions, its pictures are shown with
+    /// their crex and cost
     #[arg(long, value_name = "DIR")]
     stimuli: Option<PathBuf>,
 }
@@ -90,8 +91,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             )));
         }
     }
-    let plan = arguments.stimuli.as_deref().map(read_plan).transpose()?;
-    let report = make(arguments, &Options { plan })?;
+    let options = arguments.stimuli.as_deref().map(read_study).transpose()?.unwrap_or_default();
+    let report = make(arguments, &options)?;
     for out in &arguments.out {
         write_whole(out, &format_of(out).map(|write| write(&report)).unwrap_or_default())
             .map_err(|error| Failure::Machine(format!("{}: {error}", out.display())))?;
@@ -127,12 +128,15 @@ fn make(arguments: &Arguments, options: &Options) -> Result<Report, Failure> {
     Ok(report::of_counts(&arms, typed, options))
 }
 
-fn read_plan(path: &Path) -> Result<Plan, Failure> {
-    let study = stimuli::Study::load(path).map_err(|error| {
+fn read_study(path: &Path) -> Result<Options, Failure> {
+    let failure = |error: stimuli::Error| {
         if error.is_input() { Failure::Input(error.to_string()) } else { Failure::Machine(error.to_string()) }
-    })?;
-    Plan::of(&study)
-        .ok_or_else(|| Failure::Input(format!("{}: the equivalence bound must lie between 0 and .5", path.display())))
+    };
+    let study = stimuli::Study::load(path).map_err(failure)?;
+    let plan = Plan::of(&study)
+        .ok_or_else(|| Failure::Input(format!("{}: expected an equivalence bound between 0 and .5", path.display())))?;
+    let pictures = analysis::pictures::load(&study.folder).map_err(failure)?;
+    Ok(Options { plan: Some(plan), pictures: Some(pictures).filter(|(pictures, _)| !pictures.is_empty()) })
 }
 
 fn format_of(out: &Path) -> Option<fn(&Report) -> String> {

@@ -147,7 +147,16 @@ pub struct ArmReport {
     /// The verdict, which comes from interval and equivalence test alone.
     pub verdict: Verdict,
     /// What else there is to say.
-    pub sentences: Vec<String>,
+    pub sentences: Vec<Sentence>,
+}
+
+/// A sentence and what it is about.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Sentence {
+    /// What it is about, in a word or two.
+    pub about: &'static str,
+    /// The sentence.
+    pub sentence: String,
 }
 
 impl Tests {
@@ -240,7 +249,7 @@ impl ArmReport {
                 .map(|size| size.held_from),
             order: tally.order.as_ref().filter(|_| right).map(OrderReport::new),
             layout_effect: LayoutEffect::new(&tally.correct_by_layout),
-            second_chosen: tally.second_chosen.map(|counts| OneSample::new(counts, alpha, "The second interval")),
+            second_chosen: tally.second_chosen.map(|counts| OneSample::new(counts, alpha, "The picture shown second")),
             layout_chosen: layout_chosen.collect(),
             confidence: tally.confidence.clone(),
             counting: tally
@@ -264,40 +273,49 @@ impl ArmReport {
         self.correct.map(|k| Proportion { k, n: self.n })
     }
 
-    fn say(&self, alpha: f64, published: bool) -> Vec<String> {
+    fn say(&self, alpha: f64, published: bool) -> Vec<Sentence> {
         let mut said = Vec::new();
+        let mut say = |about: &'static str, sentence: String| said.push(Sentence { about, sentence });
         if let (Some(counts), Some(chi), Some(exact)) = (self.counts(), &self.tests.chi_square, &self.tests.binomial) {
-            said.push(words::chi_square(chi, exact.p, exact.log10_p));
-            if published {
-                said.extend(words::published(counts, chi));
+            say("test", words::chi_square(chi, exact.p, exact.log10_p));
+            if published && let Some(open) = words::published(counts, chi) {
+                say("direction", open);
             }
         }
-        said.extend(words::notes(self.n, self.tests.least_expected, self.tests.chi_square_true_size, alpha));
+        for note in words::notes(self.n, self.tests.least_expected, self.tests.chi_square_true_size, alpha) {
+            say("true size", note);
+        }
         if !self.usual_bounds.is_empty() && self.equivalence.is_none() {
-            said.push(words::usual_bounds(&self.usual_bounds));
+            say("equivalence", words::usual_bounds(&self.usual_bounds));
         }
         if let Some(factors) = &self.tests.bayes {
             let tie = BayesFactors::new(Proportion { k: self.n / 2, n: self.n }).uniform.bf01;
-            said.push(words::bayes(factors, tie));
+            say("Bayes factors", words::bayes(factors, tie));
         }
         if let (Some(equivalence), Some(mass)) = (&self.equivalence, self.posterior_within_bound) {
-            said.push(words::posterior(equivalence.bound, mass));
+            say("posterior", words::posterior(equivalence.bound, mass));
         }
         if let Some(reach) = &self.reach {
-            said.push(words::reach(reach, alpha, self.needed));
+            say("power", words::reach(reach, alpha, self.needed));
         }
         if let Some(order) = &self.order {
-            said.push(words::order(&order.second_chosen, order.signal_detection.as_ref(), order.fisher_p));
+            say("order", words::order(&order.second_chosen, order.signal_detection.as_ref(), order.fisher_p));
         }
         if let Some(effect) = &self.layout_effect {
-            said.push(words::layout_effect(&effect.by_layout, effect.fisher_p));
+            say("layout", words::layout_effect(&effect.by_layout, effect.fisher_p));
         }
-        said.extend(self.second_chosen.iter().map(|chosen| chosen.sentence.clone()));
-        said.extend(self.layout_chosen.iter().map(|chosen| chosen.chosen.sentence.clone()));
+        if let Some(chosen) = &self.second_chosen {
+            say("interval chosen", chosen.sentence.clone());
+        }
+        for chosen in &self.layout_chosen {
+            say("layout chosen", chosen.chosen.sentence.clone());
+        }
         if self.check.n > 0 {
-            said.push(words::check(self.check));
+            say("obvious pair", words::check(self.check));
         }
-        said.extend(self.informed.map(|(people, share)| words::informed(people, share)));
+        if let Some((people, share)) = self.informed {
+            say("informed trials", words::informed(people, share));
+        }
         said
     }
 }

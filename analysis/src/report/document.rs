@@ -1,10 +1,11 @@
 //! What the pages say, in order: the one source of the HTML and the Markdown.
 
+use super::Report;
 use super::arm::{ArmReport, Tests};
 use super::numbers::{p_value, percent, short};
 use super::plot::{self, Figure, Row};
 use super::words::{self, Finding};
-use super::{Report, Stimulus};
+use crate::pictures::Picture;
 
 /// A piece of a page.
 pub(super) enum Block {
@@ -27,7 +28,7 @@ pub(super) enum Block {
     /// Drawings that belong together.
     Figures(Vec<Figure>),
     /// The pictures that were shown.
-    Stimuli(Vec<Stimulus>),
+    Pictures(Vec<Picture>),
 }
 
 /// A table of texts.
@@ -89,7 +90,7 @@ fn results(report: &Report, blocks: &mut Vec<Block>) {
     }
     let bound = report.plan.as_ref().map(|plan| plan.bound.proportion);
     if !rows.is_empty() {
-        blocks.push(Block::Figures(vec![plot::intervals(&rows, bound, 1.0 - report.alpha)]));
+        blocks.push(Block::Figures(vec![plot::intervals(&rows, bound, 1.0 - report.alpha, false)]));
     }
     blocks.push(Block::Table(tests("Tests against one half", &report.arms)));
     let effects: Vec<Vec<String>> = report.arms.iter().filter_map(effects).collect();
@@ -214,14 +215,15 @@ fn equivalence(arm: &ArmReport) -> Option<Vec<String>> {
 
 fn one_arm(report: &Report, arm: &ArmReport, blocks: &mut Vec<Block>) {
     blocks.push(Block::Heading(2, format!("Arm {}", arm.arm)));
-    blocks.push(Block::List(arm.sentences.clone()));
+    blocks
+        .push(Block::Facts(arm.sentences.iter().map(|said| (said.about.to_owned(), said.sentence.clone())).collect()));
     let Some(counts) = arm.counts().filter(|counts| counts.n > 0) else { return };
     let bound = report.plan.as_ref().map(|plan| plan.bound);
-    blocks.push(Block::Figures(vec![
+    let mut figures = vec![
         plot::posterior(&arm.arm, counts, bound.map(|bound| bound.proportion)),
         plot::power_by_truth(arm.n, bound, report.alpha),
         plot::power_by_people(arm.n, arm.needed, report.alpha),
-    ]));
+    ];
     if let Some(order) = &arm.order {
         let table = order.second_chosen;
         let level = 1.0 - report.alpha;
@@ -234,14 +236,15 @@ fn one_arm(report: &Report, arm: &ArmReport, blocks: &mut Vec<Block>) {
                 Row { label: label.to_owned(), counts, interval, main: true }
             })
             .collect();
-        let mut figure = plot::intervals(&rows, None, level);
+        let mut figure = plot::intervals(&rows, None, level, true);
         figure.caption = format!(
             "{}: how often the second interval was chosen, by order. People who see the difference differ between the rows; \
              a lean shifts both to one side.",
             arm.arm
         );
-        blocks.push(Block::Figures(vec![figure]));
+        figures.push(figure);
     }
+    blocks.push(Block::Figures(figures));
 }
 
 fn between(report: &Report, blocks: &mut Vec<Block>) {
@@ -337,7 +340,7 @@ fn task(report: &Report, blocks: &mut Vec<Block>) {
 fn shown(report: &Report, blocks: &mut Vec<Block>) {
     if !report.stimuli.is_empty() {
         blocks.push(Block::Heading(2, "What was shown".to_owned()));
-        blocks.push(Block::Stimuli(report.stimuli.clone()));
+        blocks.push(Block::Pictures(report.stimuli.clone()));
     }
     let Some(timing) = &report.timing else { return };
     blocks.push(Block::Heading(2, "Timing".to_owned()));

@@ -78,7 +78,7 @@ impl Gather {
             alpha,
             contrasts: ContrastReport::all(&kept, alpha),
             multiplicity: Multiplicity::new(&kept, alpha),
-            deviations: words::deviations(plan, &provenance, &people),
+            deviations: words::deviations(plan, &provenance, &people, options.pictures.as_ref().map(|(_, hash)| *hash)),
             flow: Flow {
                 sessions: self.sessions,
                 excluded: self.reasons.into_iter().collect(),
@@ -90,7 +90,7 @@ impl Gather {
             exclusions: self.excluded,
             timing: if published { None } else { Some(self.timing.finish()) },
             plan: options.plan.clone(),
-            stimuli: Vec::new(),
+            stimuli: options.pictures.as_ref().map(|(pictures, _)| pictures.clone()).unwrap_or_default(),
             provenance,
         }
     }

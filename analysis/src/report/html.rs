@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::Stimulus;
 use super::document::{Block, Table};
 use super::numbers::{grouped, short};
 use super::plot::Figure;
 use super::words::Finding;
+use crate::pictures::Picture;
 
 pub(super) fn write(blocks: &[Block]) -> String {
     let title = blocks.iter().find_map(|block| match block {
@@ -56,8 +56,8 @@ fn write_block(out: &mut String, block: &Block) {
             let figures: Vec<String> = figures.iter().map(figure).collect();
             writeln!(out, "<div class=\"{class}\">\n{}\n</div>", figures.join("\n"))
         }
-        Block::Stimuli(stimuli) => {
-            let cards: Vec<String> = stimuli.iter().map(card).collect();
+        Block::Pictures(pictures) => {
+            let cards: Vec<String> = pictures.iter().map(card).collect();
             writeln!(out, "<div class=\"stimuli\">\n{}\n</div>", cards.join("\n"))
         }
     };
@@ -108,45 +108,45 @@ fn table_of(table: &Table) -> String {
     )
 }
 
-fn card(stimulus: &Stimulus) -> String {
-    let picture = stimulus.thumbnail.as_ref().map_or_else(
+fn card(shown: &Picture) -> String {
+    let picture = shown.thumbnail.as_ref().map_or_else(
         || "<p class=\"missing\">picture not found</p>".to_owned(),
         |png| {
             format!(
                 "<img src=\"data:image/png;base64,{}\" alt=\"{}: layout {}, quality {}\">",
                 base64(png),
-                escape(&stimulus.id),
-                escape(&stimulus.layout),
-                escape(&stimulus.quality)
+                escape(&shown.id),
+                escape(&shown.layout),
+                escape(&shown.quality)
             )
         },
     );
-    let crex = if stimulus.crex.is_empty() {
+    let crex = if shown.crex.is_empty() {
         "direct light alone".to_owned()
     } else {
-        format!("<code>{}</code>", escape(&stimulus.crex))
+        format!("<code>{}</code>", escape(&shown.crex))
     };
     format!(
         "<figure class=\"card\">{picture}<figcaption><strong>{}</strong> {crex}<br>{}</figcaption></figure>",
-        escape(&stimulus.id),
-        escape(&cost(stimulus))
+        escape(&shown.id),
+        escape(&cost(shown))
     )
 }
 
 /// What making a picture cost, in words.
-pub(super) fn cost(stimulus: &Stimulus) -> String {
-    let rays: u64 = stimulus.rays.iter().map(|(_, rays)| rays).sum();
-    let time = stimulus.cost.map(|(seconds, threads)| {
+pub(super) fn cost(shown: &Picture) -> String {
+    let rays: u64 = shown.rays.iter().map(|(_, rays)| rays).sum();
+    let time = shown.cost.map(|(seconds, threads)| {
         let threads = if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
         format!(", {} s on {threads}", short(seconds))
     });
     format!("{} rays{}", grouped(rays), time.unwrap_or_default())
 }
 
-/// Text that is only text in HTML.
+/// Text that is only text in HTML. A number keeps its percent sign, a p its value, on one line.
 pub(super) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
+    for character in text.replace(" %", "\u{a0}%").replace("p = ", "p\u{a0}=\u{a0}").chars() {
         match character {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),

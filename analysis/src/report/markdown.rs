@@ -29,16 +29,11 @@ pub(super) fn write(blocks: &[Block]) -> String {
                     out += &format!("*{}* {}\n\n", plain(&figure.caption), plain(&figure.description))
                 });
             }
-            Block::Stimuli(stimuli) => {
-                out += "| stimulus | layout | quality | crex | cost |\n|---|---|---|---|---|\n";
-                for stimulus in stimuli {
-                    let cells = [
-                        &stimulus.id,
-                        &stimulus.layout,
-                        &stimulus.quality,
-                        &stimulus.crex,
-                        &super::html::cost(stimulus),
-                    ];
+            Block::Pictures(pictures) => {
+                out += "| picture | layout | quality | crex | cost |\n|---|---|---|---|---|\n";
+                for picture in pictures {
+                    let cells =
+                        [&picture.id, &picture.layout, &picture.quality, &picture.crex, &super::html::cost(picture)];
                     let _ = writeln!(out, "| {} |", cells.map(|cell| plain(cell)).join(" | "));
                 }
                 out.push('\n');

@@ -14,8 +14,10 @@ pub mod words;
 use std::path::PathBuf;
 
 use serde::Serialize;
+use stimuli::Sha256;
 
 use crate::exclude::{Excluded, Reason};
+use crate::pictures::Picture;
 use crate::plan::Plan;
 use crate::provenance::Provenance;
 use crate::sessions;
@@ -35,6 +37,8 @@ pub struct Options {
     /// The analysis plan; without one the level is .05, there is no equivalence bound, and only interrupted trials and
     /// those who knew the purpose are left out.
     pub plan: Option<Plan>,
+    /// The pictures of the study's folder, with the manifest's digest.
+    pub pictures: Option<(Vec<Picture>, Sha256)>,
 }
 
 /// Everything that a report says.
@@ -65,31 +69,9 @@ pub struct Report {
     /// What departs from the plan, or cannot be held against one.
     pub deviations: Vec<String>,
     /// The pictures that were shown, where the study's folder was given.
-    pub stimuli: Vec<Stimulus>,
+    pub stimuli: Vec<Picture>,
     /// Where the numbers come from.
     pub provenance: Provenance,
-}
-
-/// A picture that was shown.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Stimulus {
-    /// Its name in the manifest.
-    pub id: String,
-    /// Its layout.
-    pub layout: String,
-    /// Its quality.
-    pub quality: String,
-    /// The component regular expression that made it.
-    pub crex: String,
-    /// Rays by component, `primary` among them.
-    pub rays: Vec<(String, u64)>,
-    /// Seconds that making it took, and threads.
-    pub cost: Option<(f64, usize)>,
-    /// SHA-256 of the file, as the manifest has it.
-    pub sha256: String,
-    /// The picture made small, as a PNG.
-    #[serde(skip)]
-    pub thumbnail: Option<Vec<u8>>,
 }
 
 /// How many came, how many were left out and why, how many remain.

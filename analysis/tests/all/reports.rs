@@ -82,7 +82,7 @@ fn exclusions_are_data_and_results_are_given_both_ways() {
     rows.push(practice(99));
     let twice = Trial { session_id: "s-again".into(), ..critical(5) };
     rows.push(twice);
-    let report = of(&rows, &Options { plan: Some(plan()) });
+    let report = of(&rows, &Options { plan: Some(plan()), ..Options::default() });
     let reasons: Vec<Reason> = report.exclusions.iter().map(|excluded| excluded.reason).collect();
     assert_eq!(
         reasons,
@@ -110,7 +110,7 @@ fn turning_every_answer_excludes_the_same_people() {
     rows[7].interrupted = true;
     let turned: Vec<Trial> =
         rows.iter().map(|row| crate::logs::answered(row.clone(), row.worse_answer.unwrap().other())).collect();
-    let options = Options { plan: Some(plan()) };
+    let options = Options { plan: Some(plan()), ..Options::default() };
     let excluded = |rows: &[Trial]| -> Vec<(String, Reason)> {
         let exclusions = of(rows, &options).exclusions;
         exclusions.into_iter().map(|excluded| (excluded.session_id, excluded.reason)).collect()
@@ -143,7 +143,7 @@ fn simulated_reports_say_so() {
 fn a_plan_recorded_beforehand_leaves_no_deviation() {
     let folder = tempfile::tempdir().unwrap();
     let log = write(folder.path(), "log.csv", &paper());
-    let options = Options { plan: Some(plan()) };
+    let options = Options { plan: Some(plan()), ..Options::default() };
     let deviations = || report::of_logs(std::slice::from_ref(&log), &options).unwrap().deviations;
     assert!(deviations()[0].contains("records no analysis plan"));
     let sidecar = |hash: String| Sidecar::new("log.csv", "corridor", "0.1.0", Some(hash)).to_json();

@@ -4,13 +4,16 @@ use std::fmt::Write;
 
 use crate::report::html::escape;
 
-/// Width of every plot in its own units.
-pub(super) const WIDTH: f64 = 720.0;
+/// Width of a plot that stands alone, in its own units: about as many as the pixels it gets, so that type keeps its size.
+pub(super) const WIDE: f64 = 720.0;
+
+/// Width of a plot that stands beside another.
+pub(super) const NARROW: f64 = 500.0;
 
 /// An SVG element that grows. Looks come from classes.
 pub(super) struct Canvas {
     body: String,
-    height: f64,
+    size: [f64; 2],
 }
 
 /// Where a text hangs on its position.
@@ -22,8 +25,8 @@ pub(super) enum Anchor {
 }
 
 impl Canvas {
-    pub(super) fn new(height: f64) -> Self {
-        Self { body: String::new(), height }
+    pub(super) fn new(width: f64, height: f64) -> Self {
+        Self { body: String::new(), size: [width, height] }
     }
 
     pub(super) fn line(&mut self, class: &str, from: [f64; 2], to: [f64; 2]) {
@@ -66,8 +69,9 @@ impl Canvas {
     /// The whole element. It is hidden from assistive technology, which reads the figure's description instead.
     pub(super) fn finish(self) -> String {
         format!(
-            "<svg viewBox=\"0 0 {WIDTH} {}\" aria-hidden=\"true\" focusable=\"false\">{}</svg>",
-            round(self.height),
+            "<svg viewBox=\"0 0 {} {}\" aria-hidden=\"true\" focusable=\"false\">{}</svg>",
+            round(self.size[0]),
+            round(self.size[1]),
             self.body
         )
     }
@@ -131,16 +135,10 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Draws the frame of a plot of `height`. `percent` says which axes are shares.
-    pub(super) fn draw(
-        canvas: &mut Canvas,
-        height: f64,
-        x: [f64; 2],
-        y: [f64; 2],
-        titles: [&str; 2],
-        percent: [bool; 2],
-    ) -> Self {
-        let (left, right, top, bottom) = (64.0, WIDTH - 16.0, 28.0, height - 46.0);
+    /// Draws the frame that fills a canvas. `percent` says which axes are shares.
+    pub(super) fn draw(canvas: &mut Canvas, x: [f64; 2], y: [f64; 2], titles: [&str; 2], percent: [bool; 2]) -> Self {
+        let [width, height] = canvas.size;
+        let (left, right, top, bottom) = (60.0, width - 24.0, 28.0, height - 46.0);
         let frame =
             Self { x: Scale { values: x, positions: [left, right] }, y: Scale { values: y, positions: [bottom, top] } };
         let ticks = frame.y.ticks(5.0);
@@ -149,7 +147,7 @@ impl Frame {
             canvas.line("grid", [left, at], [right, at]);
             canvas.text("tick", [left - 8.0, at + 4.0], Anchor::End, &tick_label(tick, &ticks, percent[1]));
         }
-        let ticks = frame.x.ticks(8.0);
+        let ticks = frame.x.ticks(6.0);
         for &tick in &ticks {
             let at = frame.x.at(tick);
             canvas.line("axis", [at, bottom], [at, bottom + 5.0]);
@@ -157,7 +155,7 @@ impl Frame {
         }
         canvas.line("axis", [left, bottom], [right, bottom]);
         canvas.text("title", [0.5 * (left + right), height - 6.0], Anchor::Middle, titles[0]);
-        canvas.text("title", [left - 48.0, 14.0], Anchor::Start, titles[1]);
+        canvas.text("title", [8.0, 14.0], Anchor::Start, titles[1]);
         frame
     }
 
@@ -188,7 +186,7 @@ mod tests {
 
     #[test]
     fn names_are_text() {
-        let mut canvas = Canvas::new(10.0);
+        let mut canvas = Canvas::new(10.0, 10.0);
         canvas.text("t", [0.0, 0.0], Anchor::Start, "<b>&");
         assert!(canvas.finish().contains("&lt;b&gt;&amp;</text>"));
     }

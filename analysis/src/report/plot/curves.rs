@@ -1,7 +1,7 @@
 //! Curves: the posterior, and power.
 
 use super::Figure;
-use super::canvas::{Anchor, Canvas, Frame};
+use super::canvas::{Anchor, Canvas, Frame, NARROW};
 use crate::bayes::posterior_density;
 use crate::binomial;
 use crate::plan::Bound;
@@ -9,7 +9,7 @@ use crate::power::Question;
 use crate::proportion::Proportion;
 use crate::report::numbers::percent;
 
-const HEIGHT: f64 = 300.0;
+const HEIGHT: f64 = 280.0;
 
 /// The posterior of the proportion under the uniform prior, the planned bound as a band.
 #[must_use]
@@ -24,9 +24,9 @@ pub fn posterior(arm: &str, counts: Proportion, bound: Option<f64>) -> Figure {
     let at = |i: i32| range[0] + (range[1] - range[0]) * (f64::from(i) + 0.5) / f64::from(steps);
     let densities: Vec<[f64; 2]> = (0..steps).map(|i| [at(i), posterior_density(counts, at(i))]).collect();
     let most = densities.iter().map(|[_, density]| *density).fold(0.0, f64::max);
-    let mut canvas = Canvas::new(HEIGHT);
+    let mut canvas = Canvas::new(NARROW, HEIGHT);
     let titles = ["probability of telling the lower quality", "posterior density"];
-    let frame = Frame::draw(&mut canvas, HEIGHT, range, [0.0, 1.08 * most], titles, [true, false]);
+    let frame = Frame::draw(&mut canvas, range, [0.0, 1.08 * most], titles, [true, false]);
     let floor = frame.y.at(0.0);
     if let Some(bound) = bound {
         let (left, right) = (frame.x.at(0.5 - bound), frame.x.at(0.5 + bound));
@@ -56,9 +56,9 @@ pub fn posterior(arm: &str, counts: Proportion, bound: Option<f64>) -> Figure {
 /// Exact power of the exact test against the true probability, for `n` people; with a bound, the equivalence test's too.
 #[must_use]
 pub fn power_by_truth(n: u64, bound: Option<Bound>, alpha: f64) -> Figure {
-    let mut canvas = Canvas::new(HEIGHT);
+    let mut canvas = Canvas::new(NARROW, HEIGHT);
     let titles = ["true probability of telling the lower quality", "power"];
-    let frame = Frame::draw(&mut canvas, HEIGHT, [0.5, 1.0], [0.0, 1.0], titles, [true, true]);
+    let frame = Frame::draw(&mut canvas, [0.5, 1.0], [0.0, 1.0], titles, [true, true]);
     let steps = 100;
     let truth = |i: i32| (0.5 + 0.5 * f64::from(i) / f64::from(steps)).min(1.0 - 1e-9);
     let curve = |power: &dyn Fn(f64) -> f64| -> Vec<[f64; 2]> {
@@ -89,9 +89,9 @@ pub fn power_by_truth(n: u64, bound: Option<Bound>, alpha: f64) -> Figure {
 pub fn power_by_people(n: u64, needed: Option<u64>, alpha: f64) -> Figure {
     let most = n.max(needed.unwrap_or(0)).max(20);
     let most = (most + most / 4).min(2_000);
-    let mut canvas = Canvas::new(HEIGHT);
+    let mut canvas = Canvas::new(NARROW, HEIGHT);
     let titles = ["people", "power where the truth is 75 %"];
-    let frame = Frame::draw(&mut canvas, HEIGHT, [0.0, most as f64], [0.0, 1.0], titles, [false, true]);
+    let frame = Frame::draw(&mut canvas, [0.0, most as f64], [0.0, 1.0], titles, [false, true]);
     let power = |n: u64| binomial::power(n, 0.75, alpha);
     let step = (most / 400).max(1);
     let points: Vec<[f64; 2]> = (1..=most).step_by(step as usize).map(|n| frame.point(n as f64, power(n))).collect();

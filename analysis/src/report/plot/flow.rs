@@ -1,7 +1,7 @@
 //! From sessions to analysed trials, as boxes.
 
 use super::Figure;
-use super::canvas::{Anchor, Canvas, WIDTH};
+use super::canvas::{Anchor, Canvas, WIDE};
 use crate::report::Flow;
 use crate::report::numbers::grouped;
 
@@ -17,7 +17,7 @@ pub fn flow(flow: &Flow) -> Figure {
     let arms_top = 8.0 + box_height + middle_gap;
     let has_arms = !flow.by_arm.is_empty();
     let height = arms_top + box_height + if has_arms { 28.0 + box_height } else { 0.0 } + 8.0;
-    let mut canvas = Canvas::new(height);
+    let mut canvas = Canvas::new(WIDE, height);
     let (left, width) = (8.0, 250.0);
     let middle = left + width / 2.0;
     let node = |canvas: &mut Canvas, at: [f64; 2], size: [f64; 2], text: &str| {
@@ -30,7 +30,7 @@ pub fn flow(flow: &Flow) -> Figure {
     let side_top = 8.0 + box_height + 14.0;
     let side_left = left + width + 30.0;
     canvas.line("axis", [middle, side_top + side_height / 2.0], [side_left, side_top + side_height / 2.0]);
-    canvas.rect("box", [side_left, side_top], [WIDTH - 8.0 - side_left, side_height]);
+    canvas.rect("box", [side_left, side_top], [WIDE - 8.0 - side_left, side_height]);
     if reasons.is_empty() {
         canvas.text("label", [side_left + 14.0, side_top + 26.0], Anchor::Start, "none left out");
     }
@@ -40,7 +40,7 @@ pub fn flow(flow: &Flow) -> Figure {
     node(&mut canvas, [left, arms_top], [width, box_height], &format!("{} analysed", grouped(flow.analysed)));
     if has_arms {
         let top = arms_top + box_height + 28.0;
-        let each = (WIDTH - 16.0 - 12.0 * (flow.by_arm.len() as f64 - 1.0)) / flow.by_arm.len() as f64;
+        let each = (WIDE - 16.0 - 12.0 * (flow.by_arm.len() as f64 - 1.0)) / flow.by_arm.len() as f64;
         canvas.line("axis", [middle, arms_top + box_height], [middle, top - 14.0]);
         let centre = |i: usize| left + (each + 12.0) * i as f64 + each / 2.0;
         canvas.line(

@@ -1,7 +1,7 @@
 //! Proportions with their intervals, one below the other.
 
 use super::Figure;
-use super::canvas::{Anchor, Canvas, Scale, WIDTH};
+use super::canvas::{Anchor, Canvas, NARROW, Scale, WIDE};
 use crate::proportion::Proportion;
 use crate::report::numbers::{percent, percent_range};
 
@@ -18,13 +18,14 @@ pub struct Row {
     pub main: bool,
 }
 
-/// Proportions with their intervals about one half, the planned bound as a band.
+/// Proportions with their intervals about one half, the planned bound as a band. `narrow`: it stands beside another plot.
 #[must_use]
-pub fn intervals(rows: &[Row], bound: Option<f64>, level: f64) -> Figure {
+pub fn intervals(rows: &[Row], bound: Option<f64>, level: f64, narrow: bool) -> Figure {
+    let (width, left) = if narrow { (NARROW, 170.0) } else { (WIDE, 250.0) };
     let (row_height, top) = (40.0, 24.0);
     let bottom = top + row_height * rows.len() as f64;
-    let mut canvas = Canvas::new(bottom + 46.0);
-    let x = Scale { values: [0.0, 1.0], positions: [250.0, WIDTH - 96.0] };
+    let mut canvas = Canvas::new(width, bottom + 46.0);
+    let x = Scale { values: [0.0, 1.0], positions: [left, width - 96.0] };
     if let Some(bound) = bound {
         let (left, right) = (x.at(0.5 - bound), x.at(0.5 + bound));
         canvas.rect("band", [left, top - 8.0], [right - left, bottom - top + 8.0]);
@@ -49,7 +50,7 @@ pub fn intervals(rows: &[Row], bound: Option<f64>, level: f64) -> Figure {
             canvas.dot(class, [x.at(share), y], 5.5);
         }
         canvas.text(if row.main { "label strong" } else { "label" }, [8.0, y + 4.0], Anchor::Start, &row.label);
-        canvas.text("tick", [WIDTH - 88.0, y + 4.0], Anchor::Start, &format!("{}", row.counts));
+        canvas.text("tick", [width - 80.0, y + 4.0], Anchor::Start, &format!("{}", row.counts));
         let share = share.map(percent).unwrap_or_default();
         said.push(format!("{}: {}, {share}, interval {}", row.label, row.counts, percent_range(row.interval)));
     }

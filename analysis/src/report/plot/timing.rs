@@ -1,7 +1,7 @@
 //! How far durations missed their plan.
 
 use super::Figure;
-use super::canvas::{Anchor, Canvas, Frame};
+use super::canvas::{Anchor, Canvas, Frame, WIDE};
 use crate::report::numbers::short;
 use crate::timing::{BIN_MS, Timing};
 
@@ -12,9 +12,9 @@ const HEIGHT: f64 = 240.0;
 pub fn timing(timing: &Timing) -> Option<Figure> {
     let most = timing.error_bins.iter().copied().max().filter(|most| *most > 0)?;
     let side = (timing.error_bins.len() / 2) as f64 * BIN_MS;
-    let mut canvas = Canvas::new(HEIGHT);
+    let mut canvas = Canvas::new(WIDE, HEIGHT);
     let titles = ["duration less planned duration, ms", "pictures"];
-    let frame = Frame::draw(&mut canvas, HEIGHT, [-side, side], [0.0, 1.05 * most as f64], titles, [false, false]);
+    let frame = Frame::draw(&mut canvas, [-side, side], [0.0, 1.05 * most as f64], titles, [false, false]);
     let floor = frame.y.at(0.0);
     for (i, count) in timing.error_bins.iter().enumerate().filter(|(_, count)| **count > 0) {
         let middle = i as f64 * BIN_MS - side;

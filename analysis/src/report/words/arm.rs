@@ -70,17 +70,17 @@ pub fn bayes(factors: &BayesFactors, most: f64) -> String {
     let cap = format!("With this many people the first cannot exceed {} in favour of guessing.", short(most));
     match for_guessing {
         3 => format!(
-            "Bayes factors: the data are {}, {} and {} times likelier if everybody guesses than {priors}. {cap}",
+            "The data are {}, {} and {} times likelier if everybody guesses than {priors}. {cap}",
             said[0], said[1], said[2]
         ),
         0 => format!(
-            "Bayes factors: the data are {}, {} and {} times less likely if everybody guesses than {priors}.",
+            "The data are {}, {} and {} times less likely if everybody guesses than {priors}.",
             said[0], said[1], said[2]
         ),
         _ => {
             let values: Vec<String> = all.iter().map(|factor| factor_value(factor.bf01, factor.log10_bf01)).collect();
             format!(
-                "Bayes factors for guessing against {priors}: {}, {} and {}. The priors disagree on the direction, so the \
+                "The factors for guessing against {priors}: {}, {} and {}. The priors disagree on the direction, so the \
                  factor decides nothing. {cap}",
                 values[0], values[1], values[2]
             )
@@ -180,7 +180,7 @@ pub fn preference(what: &str, counts: Proportion, intervals: Option<&Intervals>)
         "holds 50 %: a preference is not shown, nor is it ruled out"
     };
     let (level, range) = (percent_level(intervals.level), percent_range(intervals.clopper_pearson));
-    format!("{what} was called the worse by {}; the {level} interval, {range}, {side}.", counted(counts))
+    format!("{what} was called the worse one by {}; the {level} interval, {range}, {side}.", counted(counts))
 }
 
 /// Sensitivity and bias by order.
@@ -281,13 +281,13 @@ mod tests {
         let say = |k, n| bayes(&BayesFactors::new(Proportion { k, n }), 3.34);
         assert_eq!(
             say(9, 16),
-            "Bayes factors: the data are 2.97, 2.16 and 4.49 times likelier if everybody guesses than under the uniform \
+            "The data are 2.97, 2.16 and 4.49 times likelier if everybody guesses than under the uniform \
              prior, the one on 50 % to 100 %, and Jeffreys'. With this many people the first cannot exceed 3.34 in favour of \
              guessing."
         );
         assert_eq!(
             say(16, 16),
-            "Bayes factors: the data are 3855, 7710 and 9172 times less likely if everybody guesses than under the uniform \
+            "The data are 3855, 7710 and 9172 times less likely if everybody guesses than under the uniform \
              prior, the one on 50 % to 100 %, and Jeffreys'."
         );
         assert!(
@@ -343,12 +343,12 @@ mod tests {
     fn preferences() {
         let say = |k, n| {
             let counts = Proportion { k, n };
-            preference("The second interval", counts, Some(&Intervals::new(counts, 0.95)))
+            preference("The picture shown second", counts, Some(&Intervals::new(counts, 0.95)))
         };
         assert_eq!(
             say(8, 16),
-            "The second interval was called the worse by 8 of 16 (50.0 %); the 95 % interval, 24.7 % to 75.3 %, holds 50 %: \
-             a preference is not shown, nor is it ruled out."
+            "The picture shown second was called the worse one by 8 of 16 (50.0 %); the 95 % interval, 24.7 % to 75.3 %, \
+             holds 50 %: a preference is not shown, nor is it ruled out."
         );
         assert!(say(15, 16).ends_with("lies above 50 %: a preference."));
         assert!(say(1, 16).ends_with("lies below 50 %: a preference for the other."));

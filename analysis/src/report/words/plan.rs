@@ -1,13 +1,30 @@
 //! Sentences about the plan, and what departs from it.
 
+use stimuli::Sha256;
+
 use super::head;
 use crate::plan::Plan;
 use crate::provenance::Provenance;
 
-/// What departs from the plan, or cannot be held against one. `analysed` are the arms' participants.
+/// What departs from the plan, or cannot be held against one. `analysed` are the arms' participants, `manifest` the digest
+/// of the manifest of the pictures that the report shows.
 #[must_use]
-pub fn deviations(plan: Option<&Plan>, provenance: &Provenance, analysed: &[(String, u64)]) -> Vec<String> {
+pub fn deviations(
+    plan: Option<&Plan>,
+    provenance: &Provenance,
+    analysed: &[(String, u64)],
+    manifest: Option<Sha256>,
+) -> Vec<String> {
     let mut found = Vec::new();
+    if let (Some(manifest), Some(shown)) = (manifest.map(|manifest| manifest.to_string()), &provenance.stimuli_hash)
+        && manifest != *shown
+    {
+        found.push(format!(
+            "The pictures of the study's folder (manifest {}) are not those that were shown (manifest {}).",
+            head(&manifest),
+            head(shown)
+        ));
+    }
     if provenance.session_versions.len() > 1 {
         found.push(format!(
             "Several versions of the program wrote the logs: {}.",
@@ -93,14 +110,14 @@ mod tests {
     #[test]
     fn nothing_departs() {
         let good = from(Some(plan().hash().to_string()));
-        assert!(deviations(Some(&plan()), &good, &[("HQ/CBQ".into(), 16)]).is_empty());
+        assert!(deviations(Some(&plan()), &good, &[("HQ/CBQ".into(), 16)], None).is_empty());
         assert_eq!(kept(), "Nothing departs from the analysis plan, which every log recorded before its first trial.");
     }
 
     #[test]
     fn every_departure_has_its_sentence() {
         let say = |plan: Option<&Plan>, provenance: &Provenance, people: u64| {
-            deviations(plan, provenance, &[("HQ/CBQ".into(), people)]).join("\n")
+            deviations(plan, provenance, &[("HQ/CBQ".into(), people)], None).join("\n")
         };
         assert!(say(None, &from(None), 16).starts_with("No analysis plan was given: the level is .05"));
         assert_eq!(
@@ -119,8 +136,15 @@ mod tests {
                 .contains("plan is of study cornell, the logs are of study corridor.")
         );
         assert_eq!(say(Some(&plan()), &from(hash.clone()), 15), "Arm HQ/CBQ: 15 people analysed, 16 planned.");
-        let more = deviations(Some(&plan()), &from(hash.clone()), &[("HQ/CBQ".into(), 16), ("HQ/LQ".into(), 3)]);
+        let more = deviations(Some(&plan()), &from(hash.clone()), &[("HQ/CBQ".into(), 16), ("HQ/LQ".into(), 3)], None);
         assert_eq!(more, ["Arm HQ/LQ is not in the plan."]);
+        let shown = Provenance { stimuli_hash: Some("0".repeat(64)), ..from(hash.clone()) };
+        let other = deviations(Some(&plan()), &shown, &[("HQ/CBQ".into(), 16)], Some(Sha256::of(b"")));
+        assert_eq!(
+            other,
+            ["The pictures of the study's folder (manifest e3b0c44298fc) are not those that were shown (manifest \
+              000000000000)."]
+        );
         let versions = Provenance { session_versions: vec!["0.1.0".into(), "0.2.0".into()], ..from(hash) };
         assert_eq!(say(Some(&plan()), &versions, 16), "Several versions of the program wrote the logs: 0.1.0, 0.2.0.");
         assert!(say(Some(&plan()), &Provenance::default(), 16).starts_with("Published counts record no analysis plan"));
