@@ -4,6 +4,7 @@
 //! padded by more than that arithmetic can err, and the leaves are met in `f64`. So no hit is lost, whatever the unit or
 //! the place of the scene, and the answer is the one of testing every shape.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use glam::{DVec3, Vec3A};
@@ -11,6 +12,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::{BvhBuildParams, aabb::Aabb, ray::RayHit};
 
+use super::outliers::outliers;
 use super::shape::{Probe, Shape};
 use super::{Hit, Ray, SurfaceId};
 use crate::math::tolerance;
@@ -57,11 +59,15 @@ pub enum Shadow {
 /// The shapes of a scene, ready for rays. Shared freely between threads.
 pub struct Aggregate {
     bvh: Bvh2,
+    /// Those of the hierarchy in its order, then the outliers.
     items: Vec<Item>,
+    /// How many are in the hierarchy.
+    in_bvh: usize,
+    /// Centre of the hierarchy's bounds.
     centre: DVec3,
-    /// Half the largest extent.
+    /// Half the largest extent of the hierarchy's bounds.
     half_extent: f64,
-    /// Half the diagonal.
+    /// Half the diagonal of the hierarchy's bounds.
     radius: f64,
     has_straight: bool,
     has_refracting: bool,
@@ -78,35 +84,33 @@ impl Aggregate {
     /// Builds the hierarchy. Deterministic: the same items give the same tree.
     #[must_use]
     pub fn new(items: impl IntoIterator<Item = Item>) -> Self {
-        let mut items: Vec<Item> = items.into_iter().collect();
-        let [low, high] = items
-            .iter()
-            .map(|item| item.shape.bounds())
-            .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], bounds| {
-                [low.min(bounds[0]), high.max(bounds[1])]
-            });
+        let mut slots: Vec<Option<Item>> = items.into_iter().map(Some).collect();
+        let bounds: Vec<[DVec3; 2]> = slots.iter().flatten().map(|item| item.shape.bounds()).collect();
+        let (outliers, [low, high]) = outliers(&bounds);
         let (centre, half) =
-            if items.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (low + (high - low) * 0.5, (high - low) * 0.5) };
+            if bounds.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (low + (high - low) * 0.5, (high - low) * 0.5) };
         let half_extent = half.max_element();
-        let bvh = if items.is_empty() {
+        let inner: Vec<usize> = (0..bounds.len()).filter(|index| outliers.binary_search(index).is_err()).collect();
+        let boxes: Vec<Aabb> = inner
+            .iter()
+            .map(|&index| {
+                let [low, high] = bounds[index];
+                Aabb::new(
+                    round_down((low - centre) / half_extent - PADDING),
+                    round_up((high - centre) / half_extent + PADDING),
+                )
+            })
+            .collect();
+        let bvh = if boxes.is_empty() {
             Bvh2::default()
         } else {
-            let boxes: Vec<Aabb> = items
-                .iter()
-                .map(|item| {
-                    let [low, high] = item.shape.bounds();
-                    Aabb::new(
-                        round_down((low - centre) / half_extent - PADDING),
-                        round_up((high - centre) / half_extent + PADDING),
-                    )
-                })
-                .collect();
             obvhs::bvh2::builder::build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default())
         };
-        let mut slots: Vec<Option<Item>> = items.drain(..).map(Some).collect();
-        items.extend(bvh.primitive_indices.iter().filter_map(|&index| slots[index as usize].take()));
+        let order = bvh.primitive_indices.iter().map(|&at| inner[at as usize]).chain(outliers);
+        let items: Vec<Item> = order.filter_map(|index| slots[index].take()).collect();
         let has = |passage| items.iter().any(|item| item.passage == passage);
         Self {
+            in_bvh: inner.len(),
             centre,
             half_extent,
             radius: half.length(),
@@ -129,13 +133,13 @@ impl Aggregate {
         self.items.is_empty()
     }
 
-    /// Centre of the bounds.
+    /// Centre of the bounds of all shapes but outliers (a few that are far larger or further away than all others).
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         self.centre
     }
 
-    /// Half the diagonal of the bounds, in the scene's unit.
+    /// Half the diagonal of those bounds, in the scene's unit.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
@@ -145,23 +149,23 @@ impl Aggregate {
     /// transparent one, then the one seen from the front, then the one of higher precedence.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
-        let entry = self.enter(ray)?;
         let probe = Probe::new(ray.origin, ray.dir);
         let window = tolerance::least_distance(ray.origin, self.radius);
         let mut best: Option<(f64, usize)> = None;
         let mut crowded = false;
-        self.walk(&entry, |slot| {
+        let _ = self.walk(ray, |slot| {
             let item = &self.items[slot];
             let t_max = best.map_or(ray.t_max, |(t, _)| t + window);
-            let t = item.shape.meet(&probe, ray.leaving == Some(item.surface), window, t_max)?;
+            let met = item.shape.meet(&probe, ray.leaving == Some(item.surface), window, t_max);
+            let Some(t) = met else { return ControlFlow::Continue(None) };
             if let Some((nearest, _)) = best {
                 crowded |= (t - nearest).abs() <= window;
                 if t >= nearest {
-                    return None;
+                    return ControlFlow::Continue(None);
                 }
             }
             best = Some((t, slot));
-            Some(t)
+            ControlFlow::Continue(Some(t))
         });
         let (nearest, mut slot) = best?;
         if crowded {
@@ -173,17 +177,15 @@ impl Aggregate {
     /// Whether any surface that `counts` says so of meets the ray.
     #[must_use]
     pub fn occluded(&self, ray: &Ray, mut counts: impl FnMut(SurfaceId) -> bool) -> bool {
-        let Some(entry) = self.enter(ray) else { return false };
         let probe = Probe::new(ray.origin, ray.dir);
         let t_min = tolerance::least_distance(ray.origin, self.radius);
-        let mut found = false;
-        self.walk_until(&entry, |slot, _| {
+        let walk = self.walk(ray, |slot| {
             let item = &self.items[slot];
-            found = counts(item.surface)
+            let found = counts(item.surface)
                 && item.shape.meet(&probe, ray.leaving == Some(item.surface), t_min, ray.t_max).is_some();
-            !found
+            if found { ControlFlow::Break(()) } else { ControlFlow::Continue(None) }
         });
-        found
+        walk.is_break()
     }
 
     /// What a shadow ray meets before `ray.t_max`; the surface that it aims at, `target`, is no obstacle.
@@ -192,15 +194,14 @@ impl Aggregate {
     /// through, nearest first, coincident ones only once. Reuse it between calls: then nothing is allocated.
     pub fn shadow(&self, ray: &Ray, target: Option<SurfaceId>, crossings: &mut Vec<Hit>) -> Shadow {
         crossings.clear();
-        let Some(entry) = self.enter(ray) else { return Shadow::Clear };
         let probe = Probe::new(ray.origin, ray.dir);
         let window = tolerance::least_distance(ray.origin, self.radius);
         let mut blocked_at = f64::INFINITY;
         let mut bent_at = f64::INFINITY;
-        self.walk_until(&entry, |slot, t_max| {
+        let _ = self.walk(ray, |slot| {
             let item = &self.items[slot];
             if Some(item.surface) == target {
-                return true;
+                return ControlFlow::Continue(None);
             }
             let leaving = ray.leaving == Some(item.surface);
             match item.passage {
@@ -208,10 +209,11 @@ impl Aggregate {
                     if let Some(t) = item.shape.meet(&probe, leaving, window, ray.t_max.min(blocked_at)) {
                         blocked_at = t;
                         // Only what bends the ray before this point can still change the answer.
-                        if !self.has_refracting {
-                            return false;
-                        }
-                        *t_max = entry.limit(t, self.half_extent);
+                        return if self.has_refracting {
+                            ControlFlow::Continue(Some(t))
+                        } else {
+                            ControlFlow::Break(())
+                        };
                     }
                 }
                 Passage::Refracting => {
@@ -220,7 +222,7 @@ impl Aggregate {
                 }
                 Passage::Straight => self.cross(ray, &probe, slot, leaving, window, crossings),
             }
-            true
+            ControlFlow::Continue(None)
         });
         // Coincident surfaces: the opaque one is met, the bending one is not.
         if bent_at < blocked_at - window {
@@ -257,18 +259,18 @@ impl Aggregate {
 
     /// The one of the coincident surfaces around `nearest` that is met.
     fn preferred(&self, ray: &Ray, probe: &Probe, nearest: f64, window: f64) -> Option<usize> {
-        let entry = self.enter(&ray.up_to((nearest + window).next_up()))?;
+        let t_max = (nearest + window).next_up().min(ray.t_max);
         let mut best: Option<((bool, bool, u32, SurfaceId), usize)> = None;
-        self.walk(&entry, |slot| {
+        let _ = self.walk(&ray.up_to(t_max), |slot| {
             let item = &self.items[slot];
-            let t_max = (nearest + window).next_up().min(ray.t_max);
-            let t = item.shape.meet(probe, ray.leaving == Some(item.surface), window, t_max)?;
-            let front = self.hit(ray, t, slot).is_front(ray.dir);
-            let rank = (item.passage == Passage::Opaque, front, item.precedence, item.surface);
-            if best.is_none_or(|(other, _)| rank > other) {
-                best = Some((rank, slot));
+            if let Some(t) = item.shape.meet(probe, ray.leaving == Some(item.surface), window, t_max) {
+                let front = self.hit(ray, t, slot).is_front(ray.dir);
+                let rank = (item.passage == Passage::Opaque, front, item.precedence, item.surface);
+                if best.is_none_or(|(other, _)| rank > other) {
+                    best = Some((rank, slot));
+                }
             }
-            None
+            ControlFlow::Continue(None)
         });
         best.map(|(_, slot)| slot)
     }
@@ -281,7 +283,7 @@ impl Aggregate {
 
     /// Moves the ray to the point where it enters the padded bounds, and into the hierarchy's frame.
     fn enter(&self, ray: &Ray) -> Option<Entry> {
-        if self.items.is_empty() {
+        if self.in_bvh == 0 {
             return None;
         }
         // Where the origin is outside, its `f32` image could be off by more than the padding.
@@ -309,26 +311,35 @@ impl Aggregate {
         Some(entry)
     }
 
-    /// Offers leaves to `meet`, nearest first, which answers with a distance beyond which nothing matters any more.
-    fn walk(&self, entry: &Entry, mut meet: impl FnMut(usize) -> Option<f64>) {
-        self.walk_until(entry, |slot, t_max| {
-            if let Some(t) = meet(slot) {
-                *t_max = entry.limit(t, self.half_extent);
-            }
-            true
-        });
-    }
-
-    /// Offers leaves to `visit`, which may lower the distance beyond which nothing matters, until it says no.
-    fn walk_until(&self, entry: &Entry, mut visit: impl FnMut(usize, &mut f32) -> bool) {
+    /// Offers every item that the ray may meet to `visit`, which answers with the distance beyond which nothing matters any more, if that
+    /// fell, or stops the walk.
+    fn walk(&self, ray: &Ray, mut visit: impl FnMut(usize) -> ControlFlow<(), Option<f64>>) -> ControlFlow<()> {
+        let mut t_max = ray.t_max;
+        for slot in self.in_bvh..self.items.len() {
+            t_max = visit(slot)?.unwrap_or(t_max);
+        }
+        let Some(entry) = self.enter(&ray.up_to(t_max)) else { return ControlFlow::Continue(()) };
+        let mut flow = ControlFlow::Continue(());
         let leaf = |node: &Bvh2Node, ray: &mut obvhs::ray::Ray, _: &mut RayHit| {
             let first = node.first_index as usize;
-            (first..first + node.prim_count as usize).all(|slot| visit(slot, &mut ray.tmax))
+            (first..first + node.prim_count as usize).all(|slot| match visit(slot) {
+                ControlFlow::Continue(limit) => {
+                    if let Some(t) = limit {
+                        ray.tmax = entry.limit(t, self.half_extent);
+                    }
+                    true
+                }
+                ControlFlow::Break(()) => {
+                    flow = ControlFlow::Break(());
+                    false
+                }
+            })
         };
         let mut none = RayHit::none();
         obvhs::fast_stack!(u32, (96, 192), self.bvh.max_depth, stack, {
             self.bvh.ray_traverse_dynamic(&mut stack, entry.ray, &mut none, leaf);
         });
+        flow
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod aggregate;
 mod hit;
+mod outliers;
 pub mod shape;
 
 pub use aggregate::{Aggregate, Item, Passage, Shadow};

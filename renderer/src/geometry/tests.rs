@@ -199,14 +199,16 @@ fn the_answer_is_the_one_of_testing_every_shape() {
         (1e8, 1e7, DVec3::ZERO),
         (1e4, 1.0, DVec3::new(1e5, -1e5, 0.0)),
         (10.0, 1e-3, DVec3::new(0.0, 0.0, 1e6)),
+        (0.1, 1e-3, DVec3::new(2e3, 0.0, 0.0)),
     ] {
         let mut numbers = Numbers(7);
         let mut shapes: Vec<Shape> = (0..500).map(|_| some_shape(&mut numbers, reach, size)).collect();
-        // Small things on a ground 1000 times their field.
+        // Small things on a ground 100 000 times their field, under a dome.
         let ground = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         shapes.push(Shape::Polygon(
-            Polygon::new(ground.iter().map(|&[x, y]| DVec3::new(x, y, -1e-3) * reach * 1e3).collect()).unwrap(),
+            Polygon::new(ground.iter().map(|&[x, y]| DVec3::new(x, y, -1e-3) * reach * 1e5).collect()).unwrap(),
         ));
+        shapes.push(Shape::Sphere(Sphere::new(DVec3::ZERO, -reach * 1e7).unwrap()));
         let moved: Vec<Shape> = shapes.into_iter().map(|shape| moved(&shape, place)).collect();
         let aggregate = aggregate(moved.clone());
         let (mut found, mut leaving) = (0, None);
@@ -217,7 +219,7 @@ fn the_answer_is_the_one_of_testing_every_shape() {
             let dir = if i % 2 == 0 {
                 numbers.direction()
             } else {
-                let [low, high] = moved[(numbers.next() * 501.0) as usize].bounds();
+                let [low, high] = moved[(numbers.next() * 502.0) as usize].bounds();
                 (low + (high - low) * numbers.next() - origin).normalize()
             };
             let mut ray = Ray::new(origin, dir);
