@@ -1,9 +1,10 @@
 //! What crosses crates, as one test binary: `cargo test -p tests -- house` runs a part of it.
 
 mod house;
+mod reference;
 
 fn main() {
     let arguments = libtest_mimic::Arguments::from_args();
-    let trials = [house::trials()].into_iter().flatten().collect();
+    let trials = [house::trials(), reference::trials()].into_iter().flatten().collect();
     libtest_mimic::run(&arguments, trials).exit();
 }
