@@ -225,6 +225,26 @@ fn layers_add_up_to_the_beauty_and_what_nothing_reached_is_absent() {
 }
 
 #[test]
+fn parts_are_the_layers_as_pictures() {
+    let folder = Folder::new();
+    folder.stats("(TRSGM)*D", &["-av", ".1", ".1", ".1", "--parts", "parts"]);
+    let whole = picture::read(&folder.path("a.exr")).unwrap();
+    let mut names: Vec<&str> = whole.layers.iter().map(|layer| layer.name.as_str()).collect();
+    assert!(names.contains(&"direct") && names.contains(&"D") && names.contains(&"ambient"), "{names:?}");
+    for layer in &whole.layers {
+        let part = picture::read(&folder.path("parts").join(format!("{}.exr", layer.name))).unwrap();
+        assert_eq!(part.beauty, layer.pixels);
+    }
+    let mut written: Vec<String> = fs::read_dir(folder.path("parts"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap().replace(".exr", ""))
+        .collect();
+    written.sort();
+    names.sort_unstable();
+    assert_eq!(written, names);
+}
+
+#[test]
 fn one_thread_and_two_write_the_same_bytes() {
     let folder = Folder::new();
     let files = |threads: &str| {

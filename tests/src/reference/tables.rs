@@ -79,9 +79,5 @@ pub(crate) fn difference(found: &[f64], expected: &[f64], relative: f64, absolut
         worst = worst.max((found / expected - 1.0).abs());
     }
     assert!(counted > 0, "a picture has blocks that are not dark");
-    Difference {
-        mean: mean(found) / mean(expected) - 1.0,
-        agreeing: agreeing as f64 / counted as f64,
-        worst,
-    }
+    Difference { mean: mean(found) / mean(expected) - 1.0, agreeing: agreeing as f64 / counted as f64, worst }
 }

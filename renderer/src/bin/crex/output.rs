@@ -89,6 +89,27 @@ pub(crate) fn write_film(path: &Path, film: &Film, exposure: f64, provenance: &P
     file.finish()
 }
 
+/// Writes each part that adds up to the film, `direct`, `D`, `S` and so on, as a picture of its own into a folder.
+pub(crate) fn write_parts(
+    folder: &Path,
+    extension: &str,
+    film: &Film,
+    exposure: f64,
+    provenance: &Provenance,
+) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Failure::Cannot(format!("--parts {}: {error}", folder.display())))?;
+    for (name, part) in layers(film) {
+        let mut file =
+            PictureFile::create(&folder.join(format!("{name}.{extension}")), &header(film, exposure, provenance))?;
+        for (_, pixels) in bands(part) {
+            file.write(Band { beauty: &pixels, layers: &[] })?;
+        }
+        file.finish()?;
+    }
+    Ok(())
+}
+
 fn stream(stdout: impl Write, header: &Header, film: &Film) -> Result<(), Error> {
     let mut stream = HdrStream::start(stdout, header)?;
     for (_, beauty) in bands(&film.beauty()) {

@@ -54,6 +54,9 @@ pub(crate) struct Args {
     /// Also write the picture after the primary rays and after each stage into this folder
     #[arg(long, value_name = "DIR")]
     snapshots: Option<PathBuf>,
+    /// Also write each part of the picture (direct, each component, ambient) as a picture into this folder
+    #[arg(long, value_name = "DIR")]
+    parts: Option<PathBuf>,
     /// Also write what was traced, stage by stage, as JSON
     #[arg(long, value_name = "FILE")]
     stats: Option<PathBuf>,
@@ -129,6 +132,10 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
     }
     for output in &outputs {
         output.write(&rendering.film, args.exposure, &request.provenance)?;
+    }
+    if let Some(folder) = &args.parts {
+        let extension = format_beside(outputs[0].path());
+        output::write_parts(folder, extension, &rendering.film, args.exposure, &request.provenance)?;
     }
     write_stats(args, &request, &rendering, clock)
 }
