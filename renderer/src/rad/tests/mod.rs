@@ -1,6 +1,7 @@
 //! The reader as a whole, on texts of its own.
 
 mod commands;
+mod properties;
 mod real_programs;
 
 use super::{Argument, Document, Error, Kind, MemoryFiles, Options, Source, read};
