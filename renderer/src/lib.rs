@@ -1,8 +1,10 @@
 //! Radiance scenes rendered by light-transport component, in the order that a component regular expression says.
 
+pub mod cal;
 pub mod color;
 pub mod component;
 pub mod crex;
+pub mod diagnostic;
 pub mod film;
 pub mod geometry;
 pub mod importance;

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::error::Error;
 use super::kind::Kind;
 use super::lexer::Lexer;
+use crate::diagnostic::Error;
 
 /// A stretch of a source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -150,7 +150,7 @@ pub(super) fn error_at(sources: &[SourceFile], span: Span, message: impl Into<St
     let mut reader = source.read_by;
     // A file is read by files that were read before it, so this ends.
     while let Some((by, file)) = reader.and_then(|by| Some((by, sources.get(by.source as usize)?))) {
-        let (line, column, _) = super::error::locate(&file.text, by.start as usize);
+        let (line, column, _) = crate::diagnostic::locate(&file.text, by.start as usize);
         error.notes.push(format!("read by {}:{line}:{column}", file.name));
         reader = file.read_by;
     }

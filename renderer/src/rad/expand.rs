@@ -8,7 +8,6 @@ use std::rc::Rc;
 
 use super::command::{self, Word};
 use super::document::{SourceFile, Span, error_at};
-use super::error::{Error, Problems};
 use super::files::{Files, Found};
 use super::generate;
 use super::options::Options;
@@ -17,6 +16,7 @@ use super::place::Placement;
 use super::statement::Statement;
 use super::xform::{self, BadWords, Run};
 use super::{Source, decode};
+use crate::diagnostic::{Error, Problems};
 
 /// A text's statements and what its commands stand for, by statement.
 pub(super) struct Node {

@@ -7,7 +7,6 @@
 mod arguments;
 mod command;
 mod document;
-mod error;
 mod expand;
 mod files;
 mod generate;
@@ -28,8 +27,8 @@ mod xform;
 #[cfg(test)]
 mod tests;
 
+pub use crate::diagnostic::{Error, MAX_ERRORS};
 pub use document::{Argument, Document, Primitive, SourceFile, Span};
-pub use error::{Error, MAX_ERRORS};
 pub use files::{DiskFiles, Files, Found, MemoryFiles};
 pub use kind::{Class, Kind};
 pub use options::{Commands, Limits, Options};

@@ -5,12 +5,12 @@
 
 use super::arguments::check_counts;
 use super::document::{SourceFile, Span, error_at};
-use super::error::{Error, Problems};
 use super::kind::Kind;
 use super::lexer::{Lexer, Word};
 use super::number::{NotANumber, integer, real};
 use super::spelling::nearest;
 use super::statement::{Alias, Draft, Statement};
+use crate::diagnostic::{Error, Problems};
 
 /// The keyword that is no type: it names again what has a name.
 const ALIAS: &str = "alias";

@@ -5,10 +5,10 @@
 use std::collections::HashSet;
 
 use super::document::{Argument, Document, Names, Primitive, SourceFile, Span};
-use super::error::{MAX_ERRORS, Problems};
 use super::parse::{INHERIT, VOID};
 use super::spelling::nearest;
 use super::statement::{Alias, Draft, Statement};
+use crate::diagnostic::{MAX_ERRORS, Problems};
 
 /// A problem, kept until the document can say where it is.
 struct Wrong {

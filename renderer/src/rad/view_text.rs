@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::error::{Error, Problems};
 use super::number::real;
 use super::view::{ViewKind, ViewSpec};
+use crate::diagnostic::{Error, Problems};
 
 /// Programs whose command lines in a header hold view options.
 const PROGRAMS: [&str; 6] = ["rpict", "rvu", "rview", "rpiece", "rxpiece", "pinterp"];

@@ -1,4 +1,4 @@
-//! What is wrong with a scene, said so that it can be found: `file:line:column: message`, the line, a caret.
+//! What is wrong with a text, said so that it can be found: `file:line:column: message`, the line, a caret.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ pub const MAX_ERRORS: usize = 20;
 /// How much of a long line is shown around the column, characters.
 const EXCERPT: usize = 100;
 
-/// One problem in a scene or view text.
+/// One problem in a scene, a view or a function file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
     /// The file as the user knows it.
@@ -62,7 +62,7 @@ impl Error {
 }
 
 /// Line and column (both from 1; the column counts characters) of a byte offset, and the line's text.
-pub(super) fn locate(text: &str, offset: usize) -> (usize, usize, &str) {
+pub(crate) fn locate(text: &str, offset: usize) -> (usize, usize, &str) {
     let offset = floor(text, offset);
     let start = text[..offset].rfind('\n').map_or(0, |newline| newline + 1);
     let line = 1 + text[..start].bytes().filter(|&byte| byte == b'\n').count();
@@ -119,29 +119,29 @@ fn as_blanks(text: &str) -> String {
 
 /// Collects problems up to [`MAX_ERRORS`].
 #[derive(Debug, Default)]
-pub(super) struct Problems {
+pub(crate) struct Problems {
     errors: Vec<Error>,
 }
 
 impl Problems {
     /// Adds one, unless there are enough or it repeats one (a file may be read by several commands).
-    pub(super) fn add(&mut self, error: Error) {
+    pub(crate) fn add(&mut self, error: Error) {
         if !self.full() && !self.errors.contains(&error) {
             self.errors.push(error);
         }
     }
 
     /// Whether looking for more is pointless.
-    pub(super) fn full(&self) -> bool {
+    pub(crate) fn full(&self) -> bool {
         self.errors.len() >= MAX_ERRORS
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
 
     /// The problems in the order in which they were found.
-    pub(super) fn into_errors(self) -> Vec<Error> {
+    pub(crate) fn into_errors(self) -> Vec<Error> {
         self.errors
     }
 }
