@@ -151,7 +151,7 @@ impl Functions {
                     let symbol = self.symbols.get(id);
                     let is_variable = symbol.definition.is_some_and(|definition| definition.parameters.is_none());
                     let is_function = symbol.definition.is_some() || symbol.library.is_some();
-                    if !is_variable && !(passed && is_function) {
+                    if !(is_variable || passed && is_function) {
                         return Some(self.undefined(id, "variable"));
                     }
                     nodes.extend(symbol_body(id).map(|body| (body, false)));

@@ -125,9 +125,13 @@ impl Library {
     }
 }
 
+/// The multiplier of [`rand`]: e to the digits that Radiance gives it.
+#[allow(clippy::approx_constant, reason = "a hash needs these very digits")]
+const SPREAD: f64 = 2.718_281_828_459_04;
+
 /// A number in [0, 1) from another: Radiance's `rand` (calfunc.c), a hash rather than a random number.
 fn rand(x: f64) -> f64 {
-    let spread = x * (1.0 / (1.0 + x * x) + 2.718_281_828_459_04);
+    let spread = x * (1.0 / (1.0 + x * x) + SPREAD);
     let fraction = spread + (0.785_398_163_397_447 - spread.floor());
     let scaled = 1e5 / fraction;
     scaled - scaled.floor()

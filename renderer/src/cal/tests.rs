@@ -282,3 +282,52 @@ proptest! {
         prop_assert!((0.0..1.0).contains(&hashed));
     }
 }
+
+/// A hit on the plane z = 0 from straight above, as `data/make.py` traces it.
+struct FromAbove {
+    x: f64,
+    y: f64,
+}
+
+impl Surroundings for FromAbove {
+    fn channel(&self, n: u32) -> Option<f64> {
+        Some(match n {
+            3 => -1.0,
+            7 => self.x,
+            8 => self.y,
+            10 => 2.0,
+            // Nz, Rdot, S, Ix, Jy, Kz.
+            6 | 11 | 12 | 16 | 20 | 24 => 1.0,
+            1..=24 => 0.0,
+            _ => return None,
+        })
+    }
+
+    fn count(&self) -> usize {
+        2
+    }
+
+    fn argument(&self, n: usize) -> Option<f64> {
+        Somewhere.argument(n)
+    }
+}
+
+#[test]
+fn values_are_those_of_the_real_evaluators() {
+    let mut tried = 0;
+    for line in include_str!("data/values.txt").lines().filter(|line| !line.starts_with('#')) {
+        let fields: Vec<&str> = line.split(';').collect();
+        let [text, place, printed] = fields[..] else { panic!("{line}") };
+        let printed: f64 = printed.parse().unwrap();
+        let mut functions = ray();
+        let expression = functions.expression(".", text).unwrap();
+        let (at, digits) = match place.split_once(' ') {
+            Some((x, y)) => (FromAbove { x: x.parse().unwrap(), y: y.parse().unwrap() }, 2e-5),
+            None => (FromAbove { x: 0.0, y: 0.0 }, 2e-9),
+        };
+        let found = Evaluator::new(&functions).value(expression, &at).unwrap();
+        assert!((found - printed).abs() <= digits * (printed.abs() + 1.0), "{line}: found {found}");
+        tried += 1;
+    }
+    assert_eq!(tried, 163);
+}
