@@ -9,20 +9,20 @@ crex() { cargo run --quiet --release --package renderer --bin crex -- "$@"; }
 box=(stimuli/cornell/cornell.rad -vf stimuli/cornell/cornell.vf -x 400 -y 400 -lr -8 -lw .1)
 
 figure_1() { # the components of one picture, each for itself, and the full solution
-    crex render "${box[@]}" --crex '(TRSGMD)*' --spp 256 -o "$out/figure1.png" --parts "$out/figure1"
+    crex render "${box[@]}" --crex '(TRSGMD)*' --spp 64 -o "$out/figure1.png" --parts "$out/figure1"
 }
 
 figure_2() { # what a crex leaves out
-    crex render "${box[@]}" --crex 'T*' --spp 64 -o "$out/figure2_T.png"
-    crex render "${box[@]}" --crex '(TRS)*' --spp 64 -o "$out/figure2_TRS.png"
-    crex render "${box[@]}" --crex '(TD)*' --spp 256 -o "$out/figure2_TD.png"
-    crex render "${box[@]}" --crex '(TRSGD)*' --spp 256 -o "$out/figure2_TRSGD.png"
+    crex render "${box[@]}" --crex 'T*' --spp 32 -o "$out/figure2_T.png"
+    crex render "${box[@]}" --crex '(TRS)*' --spp 32 -o "$out/figure2_TRS.png"
+    crex render "${box[@]}" --crex '(TD)*' --spp 64 -o "$out/figure2_TD.png"
+    crex render "${box[@]}" --crex '(TRSGD)*' --spp 64 -o "$out/figure2_TRSGD.png"
 }
 
 figure_3() { # one bounce of everything, two, and all
-    crex render "${box[@]}" --crex '<MRSGD>T*' --spp 256 -o "$out/figure3_once.png"
-    crex render "${box[@]}" --crex '(<MRSGD>T*)2' --spp 256 -o "$out/figure3_twice.png"
-    crex render "${box[@]}" --crex '(<MRSGD>T*)*' --spp 256 -o "$out/figure3_all.png"
+    crex render "${box[@]}" --crex '<MRSGD>T*' --spp 64 -o "$out/figure3_once.png"
+    crex render "${box[@]}" --crex '(<MRSGD>T*)2' --spp 64 -o "$out/figure3_twice.png"
+    crex render "${box[@]}" --crex '(<MRSGD>T*)*' --spp 64 -o "$out/figure3_all.png"
 }
 
 for figure in "${@:-1 2 3}"; do
