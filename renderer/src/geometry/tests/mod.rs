@@ -5,6 +5,8 @@ use super::shape::{Cone, Polygon, Probe, Ring, Sphere, Triangle};
 use super::*;
 use crate::math::tolerance;
 
+mod extremes;
+
 fn item(shape: Shape, index: usize) -> Item {
     Item { shape, surface: SurfaceId(index as u32), passage: Passage::Opaque, precedence: 0 }
 }
