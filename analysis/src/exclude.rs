@@ -13,7 +13,7 @@ pub struct Conduct {
     pub interrupted: Option<String>,
     /// The participant says to have known the purpose.
     pub knew_task: bool,
-    /// The display was verified.
+    /// The display was verified, or the observer was a program and looked at none.
     pub verified: bool,
     /// From the first onset to the second, seconds.
     pub onset_to_onset_s: Option<f64>,
@@ -34,7 +34,7 @@ impl Conduct {
         Self {
             interrupted: trial.interrupted.then(|| trial.interrupt_reason.clone()),
             knew_task,
-            verified: trial.vsync == Vsync::Verified,
+            verified: trial.vsync == Vsync::Verified || trial.simulated,
             onset_to_onset_s: between(trial.first_onset_s, trial.second_onset_s),
             durations_s: [trial.first_duration_s, trial.second_duration_s],
             count_errors: [

@@ -1,1 +1,22 @@
 //! Simulated and real observers: a timed two-interval session and its log.
+
+pub mod app;
+pub mod clock;
+pub mod conduct;
+pub mod design;
+pub mod draw;
+pub mod enrol;
+pub mod error;
+pub mod input;
+pub mod log;
+pub mod observer;
+pub mod rehearse;
+pub mod script;
+pub mod session;
+pub mod setup;
+pub mod stimulus;
+pub mod timing;
+pub mod trial;
+
+#[cfg(test)]
+mod example;

@@ -1,2 +1,261 @@
-//! placeholder
-fn main() {}
+//! `crex-session`: conducts a session in a window, rehearses a study, shows its plan.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use analysis::report::{self, Options, Report};
+use clap::Parser;
+use experiment::app::{self, Launch};
+use experiment::clock::{Clock, Time, Utc};
+use experiment::conduct::Conductor;
+use experiment::enrol::{DataFolder, Kind};
+use experiment::error::{Error, Result};
+use experiment::observer::{Eye, Observer};
+use experiment::rehearse;
+use experiment::session::Outcome;
+use experiment::stimulus::Pictures;
+use stimuli::Study;
+
+/// The study that is run when none is named.
+const SHIPPED: &str = "stimuli/corridor";
+
+/// Shows the pictures of a study and records the answers.
+///
+/// Without arguments it runs the shipped study: in a window where there is a display, else as a rehearsal with
+/// simulated observers that ends in a report.
+#[derive(Parser)]
+#[command(name = "crex-session", version)]
+struct Arguments {
+    /// The study's folder or study file
+    #[arg(value_name = "STUDY")]
+    study: Option<PathBuf>,
+
+    /// The participant's code: letters, digits, `-` and `_`; no name of a person
+    #[arg(long, value_name = "ID", conflicts_with_all = ["simulate", "plan"])]
+    participant: Option<String>,
+
+    /// Rehearses the study with N simulated observers, without a window, and writes a report
+    #[arg(long, value_name = "N", conflicts_with = "plan")]
+    simulate: Option<u32>,
+
+    /// Prints the plan's hash and cell totals, and stores them
+    #[arg(long)]
+    plan: bool,
+
+    /// With --plan: shows the concealed sequence too. That this was done is logged
+    #[arg(long, requires = "plan")]
+    unblind: bool,
+
+    /// Where the data go [default: data/STUDY, rehearsals: a new folder in rehearsal/]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+
+    /// Goes on with a session that broke off; with --simulate, with every one that did
+    #[arg(long)]
+    resume: bool,
+
+    /// The monitor, counted from 0
+    #[arg(long, value_name = "N")]
+    display: Option<usize>,
+
+    /// Rehearsals only: makes the time of a simulated session run, X times as fast as the wall's
+    #[arg(long, value_name = "X", requires = "simulate", value_parser = parse_speed)]
+    speed: Option<f64>,
+
+    /// Simulated observers see one step of quality with probability P, and guess otherwise
+    #[arg(long, value_name = "P", requires = "simulate", default_value = "0", value_parser = parse_probability)]
+    sees: f64,
+
+    /// Simulated observers leave before each screen of text with probability P
+    #[arg(long, value_name = "P", requires = "simulate", default_value = "0", value_parser = parse_probability)]
+    leaves: f64,
+
+    /// Prints one JSON object: the plan or the rehearsal's report
+    #[arg(long)]
+    json: bool,
+}
+
+fn parse_speed(text: &str) -> std::result::Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed: &f64| speed.is_finite() && *speed > 0.0);
+    speed.ok_or_else(|| "expected a number above 0, as in 10".to_owned())
+}
+
+fn parse_probability(text: &str) -> std::result::Result<f64, String> {
+    let p = text.parse().ok().filter(|p| (0.0..=1.0).contains(p));
+    p.ok_or_else(|| "expected a number from 0 to 1".to_owned())
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("crex-session: {error}");
+            ExitCode::from(if error.is_input() { 2 } else { 1 })
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<()> {
+    let study = Study::load(&study_folder(arguments.study.as_deref()))?;
+    if arguments.plan {
+        return show_plan(&study, arguments);
+    }
+    if let Some(observers) = arguments.simulate {
+        return simulate(&study, observers, arguments);
+    }
+    if has_display() {
+        return session(&study, arguments);
+    }
+    if arguments.participant.is_some() {
+        let message = "no display was found (neither DISPLAY nor WAYLAND_DISPLAY is set): a session needs one";
+        return Err(Error::Machine(message.to_owned()));
+    }
+    let observers = study.arms.iter().map(|arm| arm.n).sum();
+    eprintln!(
+        "There is no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no session can be shown.\n\
+         Instead {observers} simulated observers rehearse \"{}\" through the same session machine.",
+        study.title
+    );
+    simulate(&study, observers, arguments)
+}
+
+/// The study named, else the shipped one: below the current folder, or where this program was built.
+fn study_folder(named: Option<&Path>) -> PathBuf {
+    if let Some(named) = named {
+        return named.to_owned();
+    }
+    let here = PathBuf::from(SHIPPED);
+    if here.join("study.toml").is_file() {
+        return here;
+    }
+    let built = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(SHIPPED);
+    if built.join("study.toml").is_file() { built } else { here }
+}
+
+/// Only X11 and Wayland say beforehand whether there is a display; elsewhere there is.
+fn has_display() -> bool {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(all(unix, not(target_os = "macos"))) || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
+}
+
+fn session(study: &Study, arguments: &Arguments) -> Result<()> {
+    let pictures = Pictures::of(study)?;
+    let mut decoded = Vec::new();
+    pictures.each(|picture| decoded.push(picture))?;
+    let folder = arguments.data.clone().unwrap_or_else(|| Path::new("data").join(&study.id));
+    let data = DataFolder::open(&folder, study, pictures.hash()?, Kind::Real)?;
+    eprintln!("Plan {}, {} slots.", data.plan().hash(), data.plan().slots.len());
+    let ended = app::run(Launch {
+        study,
+        data: &data,
+        pictures: decoded,
+        participant: arguments.participant.clone(),
+        resume: arguments.resume,
+        speed: 1.0,
+        monitor: arguments.display,
+    })?;
+    match ended {
+        None => eprintln!("No session was begun."),
+        Some(outcome) => eprintln!("The session has ended ({}); its data are in {}.", outcome.word(), folder.display()),
+    }
+    Ok(())
+}
+
+fn simulate(study: &Study, observers: u32, arguments: &Arguments) -> Result<()> {
+    let pictures = Pictures::of(study)?;
+    pictures.each(drop)?;
+    let planned = study.arms.iter().map(|arm| arm.n).sum::<u32>().max(1);
+    let kind = Kind::Simulated { times: observers.div_ceil(planned).max(1) };
+    let new = || Path::new("rehearsal").join(format!("{}-{}", study.id, Utc::now().compact()));
+    let folder = arguments.data.clone().unwrap_or_else(new);
+    let data = DataFolder::open(&folder, study, pictures.hash()?, kind)?;
+    eprintln!("Simulated: no person answers here. Data go to {}.", folder.display());
+    let eye = if arguments.sees > 0.0 { Eye::Threshold { sees: arguments.sees } } else { Eye::Guesser };
+    let mut logs = Vec::new();
+    for number in 1..=observers {
+        let participant = format!("sim-{number:05}");
+        let mut observer = Observer::new(eye, arguments.leaves, study.seed, &participant);
+        let again = arguments.resume && data.session_folder(&participant).is_dir();
+        let start = if again { Conductor::resume } else { Conductor::begin };
+        let begun = start(study, &data, &participant, rehearse::NO_DISPLAY)?;
+        let mut conductor = begun.conductor;
+        begun.notes.iter().for_each(|note| eprintln!("{note}"));
+        let mut time = arguments.speed.map_or(Time::Jumps { now_s: 0.0 }, |speed| Time::Runs(Clock::new(speed)));
+        time.start_at(begun.since_start_s);
+        let mut told = None;
+        let outcome = rehearse::run(&mut conductor, &mut observer, &mut time, &mut |conductor| {
+            if arguments.speed.is_some() && conductor.last_row() != told {
+                told = conductor.last_row();
+                eprintln!("{participant}: trial {} saved", told.unwrap_or_default());
+            }
+        })?;
+        logs.push(data.session_folder(&participant).join(format!("{participant}.csv")));
+        if outcome != Outcome::Completed || observers <= 64 {
+            eprintln!("{participant}: {}", outcome.word());
+        }
+    }
+    let plan = analysis::plan::Plan::of(study);
+    write_report(&report::of_logs(&logs, &Options { plan })?, &folder, arguments.json)
+}
+
+/// Writes the report beside the data in every format, and prints it in one.
+fn write_report(report: &Report, folder: &Path, json: bool) -> Result<()> {
+    let (markdown, as_json) = (report.to_markdown(), report.to_json());
+    for (name, text) in [("report.md", &markdown), ("report.json", &as_json), ("report.html", &report.to_html())] {
+        let path = folder.join(name);
+        let beside = folder.join(format!(".{name}.part"));
+        std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, &path)).map_err(|source| Error::Io {
+            action: "write",
+            path: path.clone(),
+            source,
+        })?;
+        eprintln!("{}", path.display());
+    }
+    print(if json { &as_json } else { &markdown })
+}
+
+fn show_plan(study: &Study, arguments: &Arguments) -> Result<()> {
+    let folder = arguments.data.clone().unwrap_or_else(|| Path::new("data").join(&study.id));
+    let data = DataFolder::open(&folder, study, Pictures::of(study)?.hash()?, Kind::Real)?;
+    let plan = data.plan();
+    if arguments.unblind {
+        data.note_unblinding()?;
+    }
+    if arguments.json {
+        let mut object = serde_json::json!({
+            "study": study.id,
+            "plan_hash": plan.hash(),
+            "seed": study.seed,
+            "slots": plan.slots.len(),
+            "cells": plan.totals(),
+        });
+        if arguments.unblind {
+            object["sequence"] = serde_json::json!(plan.slots);
+        }
+        return print(&object.to_string());
+    }
+    let mut text = format!("{}\nplan {}\nseed {}\n", study.title, plan.hash(), study.seed);
+    for cell in plan.totals() {
+        text.push_str(&format!("{:4} x {}: {}, then {}\n", cell.n, cell.arm, cell.first, cell.second));
+    }
+    if arguments.unblind {
+        for slot in &plan.slots {
+            let pair = &slot.critical;
+            text.push_str(&format!("{:4} {}: {}, then {}\n", slot.number, slot.arm, pair.first.id(), pair.second.id()));
+        }
+    } else {
+        text.push_str("The sequence is concealed; --unblind shows it, and is logged.\n");
+    }
+    print(&text)
+}
+
+/// To standard output. A reader that has gone away (a pager that was left) is no failure.
+fn print(text: &str) -> Result<()> {
+    match writeln!(std::io::stdout(), "{}", text.trim_end()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::Machine(format!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}

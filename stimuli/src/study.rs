@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 pub use judge::{AnalysisPlan, Exclusions};
 pub use picture::{Layout, Quality, Request, Stimulus};
-pub use protocol::{Arm, Consent, DisplayGeometry, Kind, Practice, QualityCheck, Task, Timing, Wording};
+pub use protocol::{Arm, Consent, DisplayGeometry, Hints, Kind, Practice, QualityCheck, Task, Timing, Wording};
 
 use crate::error::{Error, Mistake, Result};
 use crate::hash::Sha256;

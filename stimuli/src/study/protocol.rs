@@ -95,6 +95,54 @@ pub struct Wording {
     pub end: String,
     /// Shown on every screen of a demonstration.
     pub demo_notice: String,
+    /// Which key does what.
+    #[serde(default)]
+    pub hints: Hints,
+}
+
+/// The short lines under a screen that say which key does what. The keys are fixed, these words are not.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Hints {
+    /// Under a text: the space bar.
+    pub go_on: String,
+    /// Under consent: key 1.
+    pub agree: String,
+    /// Under consent: key 2.
+    pub decline: String,
+    /// Under a count: digits, then Enter.
+    pub count: String,
+    /// Under the critical question: key 1.
+    pub first: String,
+    /// Under the critical question: key 2.
+    pub second: String,
+    /// Under the question how sure: keys 1 to 4.
+    pub confidence: String,
+    /// Under what was noticed: Enter.
+    pub noticed: String,
+    /// Under the question after the purpose: key 1.
+    pub yes: String,
+    /// Under the question after the purpose: key 2.
+    pub no: String,
+}
+
+impl Default for Hints {
+    fn default() -> Self {
+        let texts = [
+            "Press the space bar to go on.",
+            "Press 1 if you agree.",
+            "Press 2 if you do not agree.",
+            "Type the number, then press Enter.",
+            "Press 1 for the first picture.",
+            "Press 2 for the second picture.",
+            "Press a key from 1 to 4.",
+            "Type, then press Enter.",
+            "Press 1 for yes.",
+            "Press 2 for no.",
+        ];
+        let [go_on, agree, decline, count, first, second, confidence, noticed, yes, no] = texts.map(str::to_owned);
+        Self { go_on, agree, decline, count, first, second, confidence, noticed, yes, no }
+    }
 }
 
 /// What is counted.

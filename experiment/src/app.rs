@@ -1,0 +1,119 @@
+//! The window: this module and `main` alone name egui and eframe.
+//!
+//! One pass of egui is one frame. It begins by stamping the moment at which the frame before was handed over (the swap has
+//! returned by then), goes on with the keys that came since, waits until the next frame must be begun to be seen when it
+//! is due, lets the session move on, and draws its screen. Everything that decides is in [`crate::session`] and
+//! [`crate::timing`]; here is only what needs a window.
+
+mod desk;
+mod keys;
+mod pixels;
+mod screens;
+mod watch;
+
+use std::sync::{Arc, Mutex};
+
+use stimuli::Study;
+
+use crate::clock::{Clock, Time};
+use crate::enrol::DataFolder;
+use crate::error::{Error, Result};
+use crate::session::Outcome;
+use crate::stimulus::Picture;
+
+pub use desk::{Desk, Exit};
+pub use screens::BACKGROUND;
+
+/// What a session in a window needs.
+#[derive(Debug)]
+pub struct Launch<'a> {
+    /// The study.
+    pub study: &'a Study,
+    /// Where its data go.
+    pub data: &'a DataFolder,
+    /// Every picture of the study.
+    pub pictures: Vec<Picture>,
+    /// The participant's code, if it is known already.
+    pub participant: Option<String>,
+    /// Whether the participant's session is taken up again.
+    pub resume: bool,
+    /// How fast time runs: 1 except in rehearsals.
+    pub speed: f64,
+    /// The monitor, counted from 0 in the system's order; the one that the system chooses if `None`.
+    pub monitor: Option<usize>,
+}
+
+/// Opens the window and conducts a session in it; says how the session ended, `None` if it never began.
+///
+/// # Errors
+/// If no window can be opened, the display cannot show the pictures, or the session cannot begin.
+pub fn run(launch: Launch<'_>) -> Result<Option<Outcome>> {
+    let exit = Arc::new(Mutex::new(Exit::Unbegun));
+    let mut viewport = egui::ViewportBuilder::default()
+        .with_title(format!("crex-session: {}", launch.study.title))
+        .with_fullscreen(true)
+        .with_decorations(false)
+        .with_app_id("crex-session");
+    if let Some(monitor) = launch.monitor {
+        viewport = viewport.with_monitor(monitor);
+    }
+    let options = eframe::NativeOptions {
+        viewport,
+        renderer: eframe::Renderer::Glow,
+        dithering: false,      // it would add noise to stimuli
+        persist_window: false, // where the window was last time is no place for a stimulus
+        system_font_fallback: false,
+        clipboard_shortcuts: false,
+        ..eframe::NativeOptions::default()
+    };
+    let shared = Arc::clone(&exit);
+    let create: eframe::AppCreator<'_> = Box::new(move |context| {
+        context.egui_ctx.options_mut(|options| {
+            options.zoom_with_keyboard = false; // a zoom would spoil the 1:1 pixels
+            options.max_passes = std::num::NonZeroUsize::MIN; // one pass, one frame
+        });
+        screens::style(&context.egui_ctx);
+        let time = Time::Runs(Clock::new(launch.speed));
+        Ok(Box::new(Window { desk: Desk::new(launch, time), exit: shared }))
+    });
+    eframe::run_native("crex-session", options, create).map_err(|error| {
+        Error::Machine(format!("cannot open a window: {error}; is a display connected, and OpenGL installed?"))
+    })?;
+    let ended = match exit.lock() {
+        Ok(mut exit) => std::mem::replace(&mut *exit, Exit::Unbegun),
+        Err(_) => Exit::Unbegun,
+    };
+    match ended {
+        Exit::Unbegun => Ok(None),
+        Exit::Ended(outcome) => Ok(Some(outcome)),
+        Exit::Refused(why) => Err(Error::Machine(why)),
+    }
+}
+
+/// The desk in eframe's window.
+struct Window<'a> {
+    desk: Desk<'a>,
+    exit: Arc<Mutex<Exit>>,
+}
+
+impl eframe::App for Window<'_> {
+    /// The first thing that eframe calls in a pass: the swap of the pass before has returned.
+    fn raw_input_hook(&mut self, _context: &egui::Context, _input: &mut egui::RawInput) {
+        self.desk.begin_pass();
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.desk.show(ui);
+        if let Some(exit) = self.desk.exit() {
+            if let Ok(mut shared) = self.exit.lock() {
+                *shared = exit;
+            }
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        ui.ctx().request_repaint();
+    }
+
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        BACKGROUND.to_normalized_gamma_f32()
+    }
+}

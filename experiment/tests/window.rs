@@ -1,0 +1,3 @@
+//! A real window, driven from outside.
+
+fn main() {}
