@@ -195,8 +195,9 @@ fn simulate(study: &Study, observers: u32, arguments: &Arguments) -> Result<()> 
             eprintln!("{participant}: {}", outcome.word());
         }
     }
-    let plan = analysis::plan::Plan::of(study);
-    write_report(&report::of_logs(&logs, &Options { plan })?, &folder, arguments.json)
+    let options =
+        Options { plan: analysis::plan::Plan::of(study), pictures: Some(analysis::pictures::load(&study.folder)?) };
+    write_report(&report::of_logs(&logs, &options)?, &folder, arguments.json)
 }
 
 /// Writes the report beside the data in every format, and prints it in one.
