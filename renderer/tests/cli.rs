@@ -65,6 +65,20 @@ fn plan_gives_the_contracts_tree() {
 }
 
 #[test]
+fn plan_says_what_scenes_can_spawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("a.rad");
+    std::fs::write(&scene, "void glass pane 0 0 3 .9 .9 .9\npane sphere s 0 0 4 0 0 0 1\n").unwrap();
+    let output = crex(&["plan", "TD", scene.to_str().unwrap(), "--json"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let plan = json(&output);
+    assert_eq!(plan["components"], serde_json::json!(["T", "R"]));
+    assert!(plan["warnings"][0].as_str().unwrap().contains("spawns D"), "{plan}");
+    let words = crex(&["plan", "TD", scene.to_str().unwrap()]);
+    assert!(String::from_utf8(words.stdout).unwrap().contains("can spawn T R; no material spawns D S G M"));
+}
+
+#[test]
 fn plan_tells_errors_with_their_bytes_and_exits_2() {
     let output = crex(&["plan", "T(R", "--json"]);
     assert_eq!(code(&output), 2);

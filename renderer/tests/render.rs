@@ -311,6 +311,36 @@ fn the_size_keeps_pixels_square_unless_told() {
     assert_eq!((&given["width"], &given["height"]), (&40.into(), &40.into()));
 }
 
+#[test]
+fn what_ran_where_is_shown_with_a_legend() {
+    let folder = Folder::new();
+    let values = (0..48 * 33).map(|index| 1.0 - (index % 48) as f32 / 47.0).collect();
+    let map = Raster::from_values(48, 33, values).unwrap();
+    grey::write(&folder.path("map.png"), &map, &Provenance::default()).unwrap();
+    folder.stats("T{RSGM}", &["--importance", "map.png", "--ran", "ran.png"]);
+    let ran = picture::read(&folder.path("ran.png")).unwrap().beauty;
+    assert_eq!(ran.width(), 48);
+    let row: Vec<_> = (0..48).map(|x| *ran.at(x, 16)).collect();
+    let mut colours = row.clone();
+    colours.dedup();
+    // From all members at the left down to T alone, one less at each fifth of the ramp.
+    assert_eq!(colours.len(), 5);
+    let changes: Vec<usize> = (1..48).filter(|&x| row[x] != row[x - 1]).collect();
+    assert_eq!(changes, [10, 19, 29, 38].map(|x| 48 - x).into_iter().rev().collect::<Vec<_>>());
+    assert!(ran.height() >= 33 + 5 * 7, "a line of legend for each");
+}
+
+#[test]
+fn trusted_scenes_run_commands_when_allowed() {
+    let folder = Folder::new();
+    fs::write(folder.path("more.txt"), "white sphere extra 0 0 4 0 0 1 .2\n").unwrap();
+    fs::write(folder.path("runs.rad"), format!("{ROOM}!tail -n 1 more.txt\n")).unwrap();
+    let words = [&["runs.rad", "--crex", "", "-x", "8", "-y", "8", "-o", "a.png"], &VIEW[..]].concat();
+    assert_eq!(folder.render(&words).status.code(), Some(2));
+    let allowed = folder.render(&[&words[..], &["--allow-commands"]].concat());
+    assert!(allowed.status.success(), "{}", said(&allowed));
+}
+
 /// What a terminal does on Ctrl-C.
 #[cfg(unix)]
 #[test]

@@ -66,7 +66,7 @@ mod tests {
             width in 1_usize..14, height in 1_usize..14, marks in prop::collection::vec(any::<bool>(), 196),
             rare in any::<bool>(),
         ) {
-            let is = |x: usize, y: usize| marks[y * 14 + x] && (!rare || (x * 7 + y * 3) % 11 == 0);
+            let is = |x: usize, y: usize| marks[y * 14 + x] && (!rare || (x * 7 + y * 3).is_multiple_of(11));
             let values = (0..width * height).map(|i| is(i % width, i / width)).collect();
             let found = distance_px(&Raster::from_values(width, height, values).unwrap());
             for y in 0..height {

@@ -2,5 +2,7 @@
 
 pub mod distance;
 pub mod fovea;
+mod glyphs;
 pub mod map;
+pub mod ran;
 pub mod saliency;

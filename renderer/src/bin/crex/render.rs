@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use renderer::crex::{self, Program, Setting};
 use renderer::film::Layers;
 use renderer::importance::map::ImportanceMap;
-use renderer::picture::{AtomicFile, Format, Input, Provenance, grey};
+use renderer::importance::ran;
+use renderer::picture::{self, AtomicFile, Compression, Format, Input, Picture, Provenance, Quantity, grey};
+use renderer::raster::Raster;
 use renderer::render::{RenderError, Renderer, Rendering, Settings};
 use renderer::scene::View;
 use renderer::schedule::{Clock, MonotonicClock};
@@ -51,6 +53,9 @@ pub(crate) struct Args {
     /// Importance that each member of each { } needs, from left to right, in place of i/(n+1)
     #[arg(long, value_name = "A,B,..", value_delimiter = ',')]
     thresholds: Option<Vec<f32>>,
+    /// Also write a picture, coloured by which components were allowed to run where, with a legend
+    #[arg(long, value_name = "PICTURE")]
+    ran: Option<PathBuf>,
     /// Also write the picture after the primary rays and after each stage into this folder
     #[arg(long, value_name = "DIR")]
     snapshots: Option<PathBuf>,
@@ -137,6 +142,9 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         let extension = format_beside(outputs[0].path());
         output::write_parts(folder, extension, &rendering.film, args.exposure, &request.provenance)?;
     }
+    if let Some(path) = &args.ran {
+        write_ran(path, &request, &rendering)?;
+    }
     write_stats(args, &request, &rendering, clock)
 }
 
@@ -150,7 +158,10 @@ fn outputs(args: &Args) -> Result<Vec<Output>, Failure> {
         return Err(Failure::input("`-o -` is given twice: standard output holds one picture"));
     }
     let mut paths: Vec<PathBuf> = outputs.iter().filter_map(Output::path).map(Path::to_owned).collect();
-    if let Some(file) = &args.stats {
+    if let Some(Output::Stream) = args.ran.as_deref().map(Output::new).transpose()? {
+        return Err(Failure::input("--ran wants a file, not standard output"));
+    }
+    for file in args.stats.iter().chain(&args.ran) {
         output::check_folder(file)?;
         paths.push(file.clone());
     }
@@ -243,6 +254,24 @@ fn importance(path: &Path, width: usize, height: usize) -> Result<(ImportanceMap
     };
     let name = scene_files::base_name(&path.to_string_lossy());
     Ok((map, Input { name, sha256: Sha256::of(&bytes).to_string() }))
+}
+
+/// Writes which components were allowed to run where.
+fn write_ran(path: &Path, request: &Request, rendering: &Rendering) -> Result<(), Failure> {
+    let Settings { width, height, .. } = request.settings;
+    let rows = rendering.stages.iter().filter(|row| row.report.rays > 0);
+    let runs: Vec<ran::Run> = rows.map(|row| (row.stage.component, row.stage.threshold)).collect();
+    let sets = ran::components_run(width, height, request.importance.as_ref(), &runs);
+    let shown = ran::picture(&sets);
+    let pixels = shown.values().iter().map(|pixel| pixel.as_vec3().to_array()).collect();
+    let beauty = Raster::from_values(shown.width(), shown.height(), pixels);
+    let picture = Picture {
+        quantity: Quantity::Display,
+        beauty: beauty.ok_or_else(|| Failure::Cannot("a picture of what ran where lost pixels".to_owned()))?,
+        layers: Vec::new(),
+        provenance: request.provenance.clone(),
+    };
+    Ok(picture::write(path, &picture, Compression::Zip)?)
 }
 
 fn write_stats(args: &Args, request: &Request, rendering: &Rendering, clock: &MonotonicClock) -> Result<(), Failure> {

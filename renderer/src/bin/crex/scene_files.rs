@@ -2,9 +2,10 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use renderer::picture::Input;
-use renderer::rad::{self, DiskFiles, Document, Files, Source};
+use renderer::rad::{self, Commands, DiskFiles, Document, Files, Source};
 use renderer::scene::Scene;
 use stimuli::Sha256;
 
@@ -25,7 +26,22 @@ pub(crate) struct SceneArgs {
 pub(crate) struct SearchArgs {
     /// Folders in which files that scenes name are looked for, after the scene's own and before those of RAYPATH
     #[arg(long = "path", value_name = "DIRS")]
-    pub(crate) path: Vec<PathBuf>,
+    path: Vec<PathBuf>,
+    /// Let scenes run any command; without it only xform, genbox and the like are carried out, and no other program is started
+    #[arg(long)]
+    allow_commands: bool,
+}
+
+/// Runs the commands of scenes that are trusted, as Radiance does.
+struct Shell;
+
+impl Commands for Shell {
+    fn run(&self, line: &str, folder: &str) -> Result<Vec<u8>, String> {
+        let folder = if folder.is_empty() { "." } else { folder };
+        let output = Command::new("sh").arg("-c").arg(line).current_dir(folder).stderr(Stdio::inherit()).output();
+        let output = output.map_err(|error| format!("could not be started: {error}"))?;
+        if output.status.success() { Ok(output.stdout) } else { Err(format!("failed ({})", output.status)) }
+    }
 }
 
 impl SearchArgs {
@@ -48,7 +64,9 @@ pub(crate) struct LoadedScene {
 /// Reads scene files as one scene; warnings go to standard error.
 pub(crate) fn load(scenes: &[PathBuf], search: &SearchArgs) -> Result<LoadedScene, Failure> {
     let sources = scenes.iter().map(|path| source(path)).collect::<Result<Vec<_>, _>>()?;
-    let document = rad::read(&sources, &search.files(), &rad::Options::default()).map_err(|errors| told(&errors))?;
+    let commands = search.allow_commands.then_some(&Shell as &dyn Commands);
+    let options = rad::Options { commands, ..rad::Options::default() };
+    let document = rad::read(&sources, &search.files(), &options).map_err(|errors| told(&errors))?;
     let scene = Scene::from_rad(&document).map_err(|errors| told(&errors))?;
     for warning in document.warnings.iter().chain(&scene.warnings) {
         console::say("warning", &warning.to_string());
