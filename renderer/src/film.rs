@@ -37,8 +37,8 @@ pub struct Planes {
 }
 
 impl Planes {
-    /// Makes all planes black, with room for `pixels`; only the layers of `components`, and the ambient plane if it is `ambient`, can
-    /// be added to afterwards. Allocates only if they grow.
+    /// Makes all planes black, with room for `pixels`; only the layers of `components`, and the ambient plane if it is
+    /// `ambient`, can be added to afterwards. Allocates only if they grow.
     pub fn clear(&mut self, pixels: usize, components: ComponentSet, ambient: bool) {
         self.pixels = pixels;
         let reset = |plane: &mut Vec<Rgb>, present: bool| {

@@ -84,7 +84,7 @@ pub enum RenderError {
     },
     /// The importance map has not the size of the picture.
     #[error(
-        "the importance map has {found_width} x {found_height} pixels, the picture {width} x {height}; scale the map first"
+        "the importance map has {found_width} x {found_height} pixels, the picture {width} x {height}; scale the map"
     )]
     ImportanceSize {
         /// Pixels in a row of the map.
@@ -194,7 +194,8 @@ impl<'a> Renderer<'a> {
         Self { progress: Some(progress), ..self }
     }
 
-    /// Renders the picture. Each image tile runs the whole crex by itself, so memory follows the number of threads and not the picture.
+    /// Renders the picture. Each image tile runs the whole crex by itself, so memory follows the number of threads and
+    /// not the picture.
     ///
     /// # Errors
     /// If the threads cannot be started.
@@ -202,8 +203,8 @@ impl<'a> Renderer<'a> {
         self.in_threads(|| self.render_tiles())?
     }
 
-    /// Renders the picture stage by stage, and shows its state after each. The rays of all tiles are held at once: memory follows the number
-    /// of hits. The picture is the same to the last bit as that of [`Self::render`].
+    /// Renders the picture stage by stage, and shows its state after each. The rays of all tiles are held at once:
+    /// memory follows the number of hits. The picture is the same to the last bit as that of [`Self::render`].
     ///
     /// # Errors
     /// If the threads cannot be started.

@@ -1,11 +1,12 @@
 //! Random numbers as a pure function of where they are used.
 //!
-//! A number depends on the seed, the pixel, the sample, the path that led there and the dimension asked for, and on nothing else:
-//! so neither the order in which bins run nor the number of threads changes a picture, and paths with the same word of
-//! components use the same numbers whatever the crex.
+//! A number depends on the seed, the pixel, the sample, the path that led there and the dimension asked for, and on
+//! nothing else: so neither the order in which bins run nor the number of threads changes a picture, and paths with the
+//! same word of components use the same numbers whatever the crex.
 //!
-//! Each pair of dimensions is a scrambled and shuffled Sobol (0,2)-sequence over the samples of its pixel: B. Burley, "Practical
-//! Hash-based Owen Scrambling", JCGT 9(4), 2020, with the hash of N. Vegdahl, "Building a Better LK Hash", 2021.
+//! Each pair of dimensions is a scrambled and shuffled Sobol (0,2)-sequence over the samples of its pixel: B. Burley,
+//! "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020, with the hash of N. Vegdahl, "Building a Better LK Hash",
+//! 2021.
 
 /// The way from the eye to a hit, as far as random numbers are concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -79,7 +80,8 @@ const fn owen(reversed: u32, seed: u32) -> u32 {
 
 /// Multiplies by Pascal's triangle modulo 2, which makes the second Sobol dimension (bits reversed) of an index.
 const fn pascal(index: u32) -> u32 {
-    // Entry (i, j) is odd just if the bits of i are among those of j (Lucas): a sum over supersets, one bit of i at a time.
+    // Entry (i, j) is odd just if the bits of i are among those of j (Lucas): a sum over supersets, one bit of i at a
+    // time.
     let mut x = index;
     x ^= x >> 1 & 0x5555_5555;
     x ^= x >> 2 & 0x3333_3333;
@@ -112,7 +114,8 @@ mod tests {
     }
 
     proptest! {
-        /// Every elementary interval of area 2^-k holds exactly one of the first 2^k points, and of each 2^k that follow.
+        /// Every elementary interval of area 2^-k holds exactly one of the first 2^k points, and of each 2^k that
+        /// follow.
         #[test]
         fn pairs_are_a_0_2_sequence(seed: u64, pixel: u64, dimension in 0..100_u32, k in 0..9_u32, block in 0..4_u32) {
             let n = 1_u32 << k;
@@ -136,8 +139,8 @@ mod tests {
         }
     }
 
-    /// The correlation of n independent pairs is normal with deviation 1/sqrt(n); 5 deviations raise a false alarm once in
-    /// 1.7 million, here 4 times: 2e-6. The seed is fixed.
+    /// The correlation of n independent pairs is normal with deviation 1/sqrt(n); 5 deviations raise a false alarm once
+    /// in 1.7 million, here 4 times: 2e-6. The seed is fixed.
     #[test]
     fn pixels_paths_dimensions_and_seeds_are_uncorrelated() {
         let n = 40_000_u32;
@@ -155,8 +158,8 @@ mod tests {
         }
     }
 
-    /// Over many pixels the estimate is unbiased: the mean of x y is 1/4, with deviation .22/sqrt(n) for independent points and
-    /// less for stratified ones. 5 deviations: false alarm below 1e-6; fixed seed.
+    /// Over many pixels the estimate is unbiased: the mean of x y is 1/4, with deviation .22/sqrt(n) for independent
+    /// points and less for stratified ones. 5 deviations: false alarm below 1e-6; fixed seed.
     #[test]
     fn estimates_are_unbiased() {
         let pixels = 4_000;

@@ -2,8 +2,8 @@
 
 use crate::color::Rgb;
 
-/// What is wrong with a material's arguments. The message names the argument; the caller knows the primitive, the file and
-/// the line.
+/// What is wrong with a material's arguments. The message names the argument; the caller knows the primitive, the file
+/// and the line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ArgumentError {
     /// The number of real arguments does not fit.

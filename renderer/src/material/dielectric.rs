@@ -29,8 +29,8 @@ struct Boundary {
 }
 
 impl Dielectric {
-    /// From `R G B index Hartmann`: transmission per unit of length inside, refractive index and Hartmann's constant. Of
-    /// the last only its part of the index counts, as in a Radiance built without dispersion.
+    /// From `R G B index Hartmann`: transmission per unit of length inside, refractive index and Hartmann's constant.
+    /// Of the last only its part of the index counts, as in a Radiance built without dispersion.
     ///
     /// # Errors
     /// If their number is not 5, a transmission is negative, or the index with Hartmann's part is not positive.
@@ -51,8 +51,9 @@ impl Dielectric {
         self.extinction
     }
 
-    /// Fresnel's equations for unpolarised light, and Snell's law. Refraction concentrates light by the square of the index ratio, so the
-    /// coefficient exceeds 1 when light leaves for the thinner medium (Radiance reference manual, `dielectric`).
+    /// Fresnel's equations for unpolarised light, and Snell's law. Refraction concentrates light by the square of the
+    /// index ratio, so the coefficient exceeds 1 when light leaves for the thinner medium (Radiance reference manual,
+    /// `dielectric`).
     fn boundary(&self, interaction: &Interaction) -> Boundary {
         let ratio = if interaction.front { 1.0 / self.index } else { self.index };
         let cosine = interaction.cosine;

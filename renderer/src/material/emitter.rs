@@ -20,8 +20,8 @@ pub struct Emitter {
 pub enum EmitterKind {
     /// `light`: a source for every point.
     Light,
-    /// `glow`: a source for points nearer than `radius`. Beyond it, and everywhere if it is 0, diffuse and glossy rays find the
-    /// glow by chance; if it is negative it lights nothing.
+    /// `glow`: a source for points nearer than `radius`. Beyond it, and everywhere if it is 0, diffuse and glossy rays
+    /// find the glow by chance; if it is negative it lights nothing.
     Glow {
         /// In the scene's units of length.
         radius: f64,
@@ -86,8 +86,8 @@ impl Emitter {
         Ok(Self { radiance: arguments.color()?, kind: EmitterKind::Glow { radius: arguments.finite("radius")? } })
     }
 
-    /// `spotlight` from `R G B angle dx dy dz`: full angle of the cone in degrees, and the direction in which it shines, whose
-    /// length is the focal length.
+    /// `spotlight` from `R G B angle dx dy dz`: full angle of the cone in degrees, and the direction in which it
+    /// shines, whose length is the focal length.
     ///
     /// # Errors
     /// If their number is not 7, a radiance is negative, the angle is not in (0,360] or the direction has no length.
@@ -127,16 +127,16 @@ impl Emitter {
         self.kind
     }
 
-    /// Whether it is a source of direct light to any point: whatever emits at all, so that a picture scales with its lights. Radiance
-    /// leaves out those of 1e-6 and less.
+    /// Whether it is a source of direct light to any point: whatever emits at all, so that a picture scales with its
+    /// lights. Radiance leaves out those of 1e-6 and less.
     #[must_use]
     pub fn illuminates(&self) -> bool {
         let reaches = !matches!(self.kind, EmitterKind::Glow { radius } if radius <= 0.0);
         reaches && self.radiance.max_element() > 0.0
     }
 
-    /// Radiance that a ray sees which meets the front, travelling along the unit vector `direction`. `blind` rays, which descend
-    /// from a diffuse or glossy event, see only what direct lighting left out: glow farther off than its
+    /// Radiance that a ray sees which meets the front, travelling along the unit vector `direction`. `blind` rays,
+    /// which descend from a diffuse or glossy event, see only what direct lighting left out: glow farther off than its
     /// radius, `distance` being the length of the way since that event (Radiance's rule against counting light twice).
     #[must_use]
     pub fn seen(&self, direction: DVec3, blind: bool, distance: f64) -> Rgb {

@@ -2,8 +2,8 @@
 
 /// Value subtracted from the exponential of [`approximate`], so that it nearly vanishes at normal incidence.
 ///
-/// This is the constant of Radiance releases from 2023-03 to 2026-06, with which the reference pictures in the tests were made;
-/// other releases have [`FRESNEL_OFFSET_EXACT`]. Smooth plastic seen head on differs by .00085 between them.
+/// This is the constant of Radiance releases from 2023-03 to 2026-06, with which the reference pictures in the tests
+/// were made; other releases have [`FRESNEL_OFFSET_EXACT`]. Smooth plastic seen head on differs by .00085 between them.
 pub const FRESNEL_OFFSET: f64 = 0.002_029_430_64;
 
 /// exp(-5.85): the offset of Radiance releases before 2023-03 and after 2026-06.

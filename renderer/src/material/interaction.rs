@@ -19,7 +19,8 @@ impl Interaction {
     /// Radiance bounds the cosine away from zero, where Fresnel's and Ward's terms divide by it.
     pub const LEAST_COSINE: f64 = 0.001;
 
-    /// A ray of direction `incoming` that meets a surface whose own front has the normal `front_normal`; both unit vectors.
+    /// A ray of direction `incoming` that meets a surface whose own front has the normal `front_normal`; both unit
+    /// vectors.
     #[must_use]
     pub fn new(incoming: DVec3, front_normal: DVec3) -> Self {
         let cosine = -incoming.dot(front_normal);

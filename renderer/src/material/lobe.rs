@@ -16,13 +16,13 @@ pub struct Lobe {
     pub spread: Spread,
     /// Radiance that arrives along the lobe is multiplied by this; the mean over the lobe, so not divided by a density.
     pub coefficient: Rgb,
-    /// The extinction, per unit of length, of the medium that the rays enter (0: nothing absorbs); `None`: the medium that the
-    /// incoming ray was in.
+    /// The extinction, per unit of length, of the medium that the rays enter (0: nothing absorbs); `None`: the medium
+    /// that the incoming ray was in.
     pub medium: Option<Rgb>,
 }
 
-/// The distribution of a lobe's directions. Directions of spread lobes are random, so single precision describes them; an
-/// ideal direction keeps all its digits, for chains of mirrors at large coordinates.
+/// The distribution of a lobe's directions. Directions of spread lobes are random, so single precision describes them;
+/// an ideal direction keeps all its digits, for chains of mirrors at large coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spread {
     /// One direction (a unit vector).
@@ -54,8 +54,8 @@ pub enum Spread {
 pub struct GlossySampling {
     /// In [0,1]: how much of the lobe's width is sampled; 0 gives the ideal direction.
     pub width: f64,
-    /// Weigh each direction by 2/(1 + cos_in/cos_out) and count those below the surface as dark, as rpict does when it takes several
-    /// samples of a lobe; otherwise each weighs 1 and those below the surface are drawn again.
+    /// Weigh each direction by 2/(1 + cos_in/cos_out) and count those below the surface as dark, as rpict does when it
+    /// takes several samples of a lobe; otherwise each weighs 1 and those below the surface are drawn again.
     pub weighted: bool,
 }
 
@@ -65,8 +65,9 @@ impl GlossySampling {
 }
 
 impl Spread {
-    /// A direction of the lobe (a unit vector) with its weight, whose mean is 1 but for [`GlossySampling::weighted`]; `None` if
-    /// the direction drawn lies below the surface. `draw(trial)` gives a point of the unit square for each trial.
+    /// A direction of the lobe (a unit vector) with its weight, whose mean is 1 but for [`GlossySampling::weighted`];
+    /// `None` if the direction drawn lies below the surface. `draw(trial)` gives a point of the unit square for each
+    /// trial.
     #[must_use]
     pub fn direction(&self, glossy: GlossySampling, draw: impl Fn(u32) -> [f64; 2]) -> Option<(DVec3, f64)> {
         match *self {

@@ -1,7 +1,8 @@
-//! Radiance's materials: what each does with light. One file a material; formulas are those of the Radiance reference manual.
+//! Radiance's materials: what each does with light. One file a material; formulas are those of the Radiance reference
+//! manual.
 //!
-//! A hit is shaded in three steps, none of which allocates: an [`Emitter`] shows its radiance; direct light is weighed by a
-//! [`Response`]; and [`Material::scatter`] names the [`Lobe`]s along which light arrives from elsewhere, each with
+//! A hit is shaded in three steps, none of which allocates: an [`Emitter`] shows its radiance; direct light is weighed
+//! by a [`Response`]; and [`Material::scatter`] names the [`Lobe`]s along which light arrives from elsewhere, each with
 //! its [`Event`]. [`crate::component::Component::of`] turns the event into the bin.
 
 mod arguments;
@@ -85,7 +86,8 @@ impl Material {
         matches!(self, Self::Trans(_) | Self::Glass(_) | Self::Dielectric(_))
     }
 
-    /// The components that the material can spawn when `-st` is `threshold`. Alternates are materials of their own and not counted here.
+    /// The components that the material can spawn when `-st` is `threshold`. Alternates are materials of their own and
+    /// not counted here.
     #[must_use]
     pub fn components(&self, threshold: f64) -> ComponentSet {
         // Every lobe that a material has shows at one of these angles, from outside or inside: fractions only
@@ -114,8 +116,8 @@ impl Material {
         }
     }
 
-    /// Gives each lobe of a hit to `spawn`, in a fixed order. A rough lobe of at most `threshold` (rpict's `-st`) joins the
-    /// diffuse one.
+    /// Gives each lobe of a hit to `spawn`, in a fixed order. A rough lobe of at most `threshold` (rpict's `-st`) joins
+    /// the diffuse one.
     pub fn scatter(&self, interaction: Interaction, threshold: f64, spawn: impl FnMut(Lobe)) {
         match self {
             Self::Plastic(plastic) => plastic.respond(interaction).scatter(threshold, spawn),

@@ -1,4 +1,5 @@
-//! What plastic, metal and trans have in common: diffuse and specular parts on both sides of an opaque or translucent sheet.
+//! What plastic, metal and trans have in common: diffuse and specular parts on both sides of an opaque or translucent
+//! sheet.
 //!
 //! Formulas: Radiance's `normal` shader as its reference manual ("The RADIANCE 5.1 Synthetic Imaging System", materials
 //! plastic, metal, trans) and the paper of [`super::ward`] describe it.
@@ -84,8 +85,8 @@ impl Response {
         diffuse > 0.0 || !self.finish.is_smooth()
     }
 
-    /// The fraction of a light's radiance that the surface sends back along the ray, per channel. `to_light` is the unit direction
-    /// towards the light, which subtends `solid_angle` steradians.
+    /// The fraction of a light's radiance that the surface sends back along the ray, per channel. `to_light` is the
+    /// unit direction towards the light, which subtends `solid_angle` steradians.
     #[must_use]
     pub fn direct(&self, to_light: DVec3, solid_angle: f64) -> Rgb {
         let cosine = self.interaction.normal.dot(to_light);

@@ -43,10 +43,17 @@ fn over_sphere(n: usize, mut f: impl FnMut(DVec3) -> f64) -> f64 {
     sum * 4.0 * PI / (2 * n * n) as f64
 }
 
+/// Smooth, or rough by any amount.
+fn roughness() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), 0.002..0.5_f64]
+}
+
 proptest! {
     /// What is not specular is coloured diffuse; a furnace gives back rspec + colour x (1 - rspec).
     #[test]
-    fn plastic_in_a_furnace(spec in 0.0..=1.0_f64, rough in prop_oneof![Just(0.0), 0.002..0.5_f64], color in 0.0..=1.0_f64, angle in 0.0..1.5_f64, above: bool) {
+    fn plastic_in_a_furnace(
+        spec in 0.0..=1.0_f64, rough in roughness(), color in 0.0..=1.0_f64, angle in 0.0..1.5_f64, above: bool,
+    ) {
         let plastic = Plastic::from_reals(&[color, 0.5, 1.0, spec, rough]).unwrap();
         let fresnel = if rough == 0.0 && spec >= 0.018 { (-5.85 * angle.cos()).exp() - FRESNEL_OFFSET } else { 0.0 };
         let gloss = spec + fresnel * (1.0 - spec);
@@ -56,7 +63,7 @@ proptest! {
 
     /// A white metal gives everything back; a coloured one is white only where Fresnel adds to it.
     #[test]
-    fn metal_in_a_furnace(spec in 0.0..=1.0_f64, rough in prop_oneof![Just(0.0), 0.002..0.5_f64], angle in 0.0..1.5_f64) {
+    fn metal_in_a_furnace(spec in 0.0..=1.0_f64, rough in roughness(), angle in 0.0..1.5_f64) {
         let white = Metal::from_reals(&[1.0, 1.0, 1.0, spec, rough]).unwrap();
         prop_assert!(close(furnace(&Material::Metal(white), meeting(angle, true)), Rgb::ONE, 2e-6));
         let fresnel = if rough == 0.0 && spec >= 0.018 { (-5.85 * angle.cos()).exp() - FRESNEL_OFFSET } else { 0.0 };
@@ -66,8 +73,12 @@ proptest! {
 
     /// Trans divides what its gloss leaves between both sides and loses only what its colour takes.
     #[test]
-    fn trans_in_a_furnace(spec in 0.0..=1.0_f64, rough in prop_oneof![Just(0.0), 0.002..0.5_f64], trans in 0.0..=1.0_f64, share in 0.0..=1.0_f64, angle in 0.0..1.5_f64, above: bool) {
-        let sheet = |color| Material::Trans(Trans::from_reals(&[color, color, color, spec, rough, trans, share]).unwrap());
+    fn trans_in_a_furnace(
+        spec in 0.0..=1.0_f64, rough in roughness(), trans in 0.0..=1.0_f64, share in 0.0..=1.0_f64,
+        angle in 0.0..1.5_f64, above: bool,
+    ) {
+        let reals = |color| [color, color, color, spec, rough, trans, share];
+        let sheet = |color| Material::Trans(Trans::from_reals(&reals(color)).unwrap());
         prop_assert!(close(furnace(&sheet(1.0), meeting(angle, above)), Rgb::ONE, 4e-6));
         let gloss = furnace(&sheet(0.0), meeting(angle, above));
         prop_assert!(close(furnace(&sheet(0.25), meeting(angle, above)), gloss + (Rgb::ONE - gloss) * 0.25, 4e-6));
@@ -80,8 +91,9 @@ proptest! {
         prop_assert!(close(furnace(&pane, meeting(angle, true)), Rgb::ONE, 1e-12));
     }
 
-    /// In a solid of index n at equilibrium radiance is n^2: entering light gains n^2, so reflection + refraction / n^2 = 1 from
-    /// outside, and reflection + refraction x n^2 = 1 from inside, where the furnace is n^2 times weaker beyond.
+    /// In a solid of index n at equilibrium radiance is n^2: entering light gains n^2, so reflection + refraction / n^2
+    /// = 1 from outside, and reflection + refraction x n^2 = 1 from inside, where the furnace is n^2 times weaker
+    /// beyond.
     #[test]
     fn dielectric_in_a_furnace(index in 1.01..3.0_f64, angle in 0.0..1.57_f64, outside: bool) {
         let solid = Material::Dielectric(Dielectric::from_reals(&[0.5, 0.5, 0.5, index, 0.0]).unwrap());
@@ -93,7 +105,8 @@ proptest! {
         prop_assert!((sum - 1.0).abs() < 1e-12);
     }
 
-    /// Snell's law and reversibility: light that enters and leaves by the same angle goes on as it came, and what remains of it is (1 - R)^2.
+    /// Snell's law and reversibility: light that enters and leaves by the same angle goes on as it came, and what
+    /// remains of it is (1 - R)^2.
     #[test]
     fn refraction_is_reversible(index in 1.01..3.0_f64, angle in 0.0..1.5_f64) {
         let solid = Dielectric::from_reals(&[1.0, 1.0, 1.0, index, 0.0]).unwrap();
@@ -136,7 +149,8 @@ proptest! {
 
 #[test]
 fn fresnel_at_known_angles() {
-    // Glass of index 1.5 reflects 4 % head on, nothing of the parallel part at Brewster's angle, all at grazing incidence.
+    // Glass of index 1.5 reflects 4 % head on, nothing of the parallel part at Brewster's angle, all at grazing
+    // incidence.
     let solid = |index| Dielectric::from_reals(&[1.0, 1.0, 1.0, index, 0.0]).unwrap();
     let reflected = |index: f64, angle: f64, above| {
         let found = lobes(&Material::Dielectric(solid(index)), meeting(angle, above), 0.0);
@@ -173,7 +187,8 @@ fn a_pane_of_88_percent_transmittance_has_transmissivity_96() {
 
 #[test]
 fn a_uniform_sky_as_light_gives_the_diffuse_albedo() {
-    // The direct coefficient of a matt surface, integrated over all directions, is its reflectance and its transmittance.
+    // The direct coefficient of a matt surface, integrated over all directions, is its reflectance and its
+    // transmittance.
     let sheet = Trans::from_reals(&[0.8, 0.8, 0.8, 0.0, 0.0, 0.25, 0.0]).unwrap();
     let response = sheet.respond(meeting(0.4, true));
     let above = over_sphere(64, |l| if l.z > 0.0 { response.direct(l, 1.0).x } else { 0.0 });
@@ -182,8 +197,9 @@ fn a_uniform_sky_as_light_gives_the_diffuse_albedo() {
     assert!((below - 0.8 * 0.25).abs() < 1e-3, "{below}");
 }
 
-/// White rough metal (alpha .3) under a uniform white dome: rpict (RADIANCE 6.0a, `-ss 64`) returns .91, .87, .79 and .82 at 0,
-/// 45, 70 and 85 degrees. The direct term, integrated over the dome, and the weighted samples must both agree.
+/// White rough metal (alpha .3) under a uniform white dome: rpict (RADIANCE 6.0a, `-ss 64`) returns .91, .87, .79 and
+/// .82 at 0, 45, 70 and 85 degrees. The direct term, integrated over the dome, and the weighted samples must both
+/// agree.
 #[test]
 fn the_rough_lobe_and_its_samples_have_one_albedo() {
     let metal = Metal::from_reals(&[1.0, 1.0, 1.0, 1.0, 0.3]).unwrap();
@@ -238,8 +254,8 @@ fn half_vectors_spread_by_alpha() {
 
 #[test]
 fn the_transmitted_lobe_passes_its_share() {
-    // Seen head on, a lobe of width a lies beyond the surface; with x = 1 - cos its integral is E sqrt(1 - x), x exponential of mean
-    // a^2/2: 1 - a^2/4 - a^4/16 to second order.
+    // Seen head on, a lobe of width a lies beyond the surface; with x = 1 - cos its integral is E sqrt(1 - x), x
+    // exponential of mean a^2/2: 1 - a^2/4 - a^4/16 to second order.
     let (width, share): (f64, f64) = (0.2, 0.9 * 0.3);
     let sheet = Trans::from_reals(&[0.9, 0.9, 0.9, 0.0, width, 0.6, 0.5]).unwrap();
     let response = sheet.respond(meeting(0.0, true));

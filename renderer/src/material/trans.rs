@@ -65,7 +65,8 @@ impl Trans {
         }
     }
 
-    /// The fraction of a light that a shadow ray brings through, per channel: a rough sheet scatters all of it, so none.
+    /// The fraction of a light that a shadow ray brings through, per channel: a rough sheet scatters all of it, so
+    /// none.
     #[must_use]
     pub fn shadow(&self, interaction: &Interaction) -> Rgb {
         if self.finish.is_smooth() { self.color * self.shares(interaction.cosine).passed_specular } else { Rgb::ZERO }

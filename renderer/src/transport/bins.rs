@@ -10,8 +10,8 @@ use crate::work::BinOccupancy;
 
 use super::ray::RayPath;
 
-/// Rays that one lobe of one hit spawned. They get their directions when the bin runs, so memory follows the number of hits
-/// and not the number of rays.
+/// Rays that one lobe of one hit spawned. They get their directions when the bin runs, so memory follows the number of
+/// hits and not the number of rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpawnRecord {
     /// Where the rays start.
@@ -50,8 +50,8 @@ pub struct RayBins {
 }
 
 impl RayBins {
-    /// Empties all bins, keeping their memory, and gives bins to the components in `stored` only: rays of the others, which nothing
-    /// will run, are merely counted.
+    /// Empties all bins, keeping their memory, and gives bins to the components in `stored` only: rays of the others,
+    /// which nothing will run, are merely counted.
     pub fn clear(&mut self, stored: ComponentSet) {
         self.stored = stored;
         self.dropped = PerComponent::default();
@@ -86,7 +86,8 @@ impl RayBins {
         }
     }
 
-    /// Takes every visible record out of a component's bin. Give the vector to [`Self::give_back`] when it has been worked off.
+    /// Takes every visible record out of a component's bin. Give the vector to [`Self::give_back`] when it has been
+    /// worked off.
     pub fn take(&mut self, component: Component) -> Vec<SpawnRecord> {
         let bin = &mut self.bins[component];
         bin.visible_rays = 0;

@@ -18,8 +18,8 @@ pub(super) struct Scratch {
     legs: Vec<Leg>,
 }
 
-/// Crossings of refracting surfaces after which a shadow ray is given up. Rays that are only refracted leave a solid after a few;
-/// no light is lost by this but in rings of lenses.
+/// Crossings of refracting surfaces after which a shadow ray is given up. Rays that are only refracted leave a solid
+/// after a few; no light is lost by this but in rings of lenses.
 const MOST_CROSSINGS: usize = 256;
 
 /// Coefficient below which a refracted shadow ray is given up, as in rpict.
@@ -130,8 +130,8 @@ impl Lit<'_> {
         }
     }
 
-    /// The fraction of a light's radiance that arrives by a ray which refracting solids bend: it counts if it comes to the light after
-    /// all, over the mirrors that relay it.
+    /// The fraction of a light's radiance that arrives by a ray which refracting solids bend: it counts if it comes to
+    /// the light after all, over the mirrors that relay it.
     fn refracted(&self, light: &Light, start: Ray) -> Rgb {
         let mut ray = Ray { t_max: f64::INFINITY, ..start };
         let mut extinction = self.extinction;

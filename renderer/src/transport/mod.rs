@@ -1,7 +1,8 @@
 //! Rays between hits: what a parcel of them does in each stage. Knows no crex, no clock and no picture.
 //!
-//! A [`Parcel`] is the work unit: a block of pixels and a range of sample numbers, with its own bins and planes. [`Tracer`]
-//! traces one ray: nearest hit, emission, direct light, and then every lobe goes through the one door in `spawn` to a bin.
+//! A [`Parcel`] is the work unit: a block of pixels and a range of sample numbers, with its own bins and planes.
+//! [`Tracer`] traces one ray: nearest hit, emission, direct light, and then every lobe goes through the one door in
+//! `spawn` to a bin.
 
 mod bins;
 mod dimension;

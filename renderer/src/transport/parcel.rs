@@ -47,7 +47,8 @@ pub struct Workspace {
 }
 
 impl Parcel {
-    /// A parcel of the samples `numbers` of a block's pixels, whose spawned rays are kept for the components in `stored`.
+    /// A parcel of the samples `numbers` of a block's pixels, whose spawned rays are kept for the components in
+    /// `stored`.
     #[must_use]
     pub fn new(block: Block, numbers: Range<u32>, stored: ComponentSet, ambient: bool) -> Self {
         let mut parcel = Self { block, numbers: 0..0, bins: RayBins::default(), planes: Planes::default() };
@@ -89,8 +90,8 @@ impl Parcel {
         WorkReport { rays, spawned: spawner.spawned, seconds: 0.0 }
     }
 
-    /// Traces the visible rays of a component's bin: all, or if the stage has a threshold those of pixels whose `importance` (a map of
-    /// the whole picture; everywhere 1 if there is none) reaches it. The others stay visible.
+    /// Traces the visible rays of a component's bin: all, or if the stage has a threshold those of pixels whose
+    /// `importance` (a map of the whole picture; everywhere 1 if there is none) reaches it. The others stay visible.
     pub fn run(
         &mut self,
         tracer: &Tracer<'_>,
@@ -150,7 +151,8 @@ impl Parcel {
         self.bins.left()
     }
 
-    /// Adds what the parcel has brought so far to `sums`: its planes, and the ambient estimate of the diffuse rays that still wait.
+    /// Adds what the parcel has brought so far to `sums`: its planes, and the ambient estimate of the diffuse rays that
+    /// still wait.
     pub fn add_to(&self, sums: &mut Planes, ambient: Rgb) {
         sums.add_all(&self.planes);
         if ambient != Rgb::ZERO {

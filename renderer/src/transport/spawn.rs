@@ -16,8 +16,8 @@ use super::ray::RayPath;
 /// Where paths end and how many rays a hit spawns: rpict's options of the same letters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// `-lr`: most reflections of a path. If 0 or negative, rays below `least_weight` play Russian roulette instead of ending,
-    /// with at most the magnitude of reflections (0: any number).
+    /// `-lr`: most reflections of a path. If 0 or negative, rays below `least_weight` play Russian roulette instead of
+    /// ending, with at most the magnitude of reflections (0: any number).
     pub reflections: i32,
     /// `-lw`: rays of less weight end.
     pub least_weight: f64,
@@ -27,8 +27,8 @@ pub struct Limits {
     pub glossy_threshold: f64,
     /// `-ad`: diffuse rays for each lobe at a primary hit.
     pub diffuse_rays: u32,
-    /// `-ss`: glossy rays for each lobe at a primary hit; up to 1.5 means one, and below 1 narrows the lobe. From 2 on directions are
-    /// weighted ([`GlossySampling::weighted`]).
+    /// `-ss`: glossy rays for each lobe at a primary hit; up to 1.5 means one, and below 1 narrows the lobe. From 2 on
+    /// directions are weighted ([`GlossySampling::weighted`]).
     pub glossy_rays: f64,
 }
 

@@ -121,7 +121,8 @@ impl Tracer<'_> {
         None
     }
 
-    /// What a ray sees in a surface: an illum or a mirror may be something else to it, or nothing (Radiance reference manual).
+    /// What a ray sees in a surface: an illum or a mirror may be something else to it, or nothing (Radiance reference
+    /// manual).
     fn seen(&self, hit: &Hit, ray: &Ray, blind: bool) -> Seen<'_> {
         let Some(mut material) = self.scene.material(hit.surface) else { return Seen::Through };
         let front = hit.is_front(ray.dir);
