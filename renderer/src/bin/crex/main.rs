@@ -11,6 +11,7 @@ mod scene_files;
 mod snapshots;
 mod spellings;
 mod stats;
+mod stimuli;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -37,6 +38,8 @@ enum Command {
     Plan(plan::Args),
     /// Measure how far a picture lies from a reference
     Compare(compare::Args),
+    /// Render the pictures of a study that are missing or stale, or check them
+    Stimuli(stimuli::Args),
 }
 
 /// The commands that take rpict's options.
@@ -62,6 +65,7 @@ fn run(words: Vec<OsString>, clock: &MonotonicClock) -> Result<(), Failure> {
         Command::Render(args) => render::run(&args, &radiance, clock),
         Command::Plan(args) => plan::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Stimuli(args) => stimuli::run(&args, clock),
     }
 }
 

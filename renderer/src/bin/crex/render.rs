@@ -8,8 +8,8 @@ use renderer::importance::map::ImportanceMap;
 use renderer::importance::ran;
 use renderer::picture::{self, AtomicFile, Compression, Format, Input, Picture, Provenance, Quantity, grey};
 use renderer::raster::Raster;
-use renderer::render::{RenderError, Renderer, Rendering, Settings};
-use renderer::scene::View;
+use renderer::render::{RenderError, Renderer, Rendering, Settings, Snapshot};
+use renderer::scene::{Scene, View};
 use renderer::schedule::{Clock, MonotonicClock};
 use renderer::transport::Limits;
 use stimuli::Sha256;
@@ -76,6 +76,9 @@ enum LayerChoice {
     First,
 }
 
+/// Takes the picture after every stage.
+type Show<'a> = &'a mut (dyn FnMut(Snapshot<'_>) + Send);
+
 /// Everything that a picture depends on, checked.
 pub(crate) struct Request {
     pub(crate) program: Program,
@@ -86,13 +89,47 @@ pub(crate) struct Request {
     pub(crate) provenance: Provenance,
 }
 
+/// A scene and what is asked of it, ready to be rendered.
+pub(crate) struct Prepared {
+    pub(crate) request: Request,
+    /// The files that were read for the scene.
+    pub(crate) files: Vec<PathBuf>,
+    scene: Scene,
+}
+
 pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock) -> Result<(), Failure> {
+    let outputs = outputs(args)?;
+    let prepared = prepare(args, options)?;
+    let request = &prepared.request;
+    let rendering = match &args.snapshots {
+        None => prepared.render(clock, None)?,
+        Some(folder) => {
+            let mut snapshots = snapshots::Writer::new(folder, outputs[0].path(), args.exposure, &request.provenance)?;
+            let rendering = prepared.render(clock, Some(&mut |snapshot| snapshots.write(&snapshot)))?;
+            snapshots.finish()?;
+            rendering
+        }
+    };
+    for output in &outputs {
+        output.write(&rendering.film, args.exposure, &request.provenance)?;
+    }
+    if let Some(folder) = &args.parts {
+        let extension = format_beside(outputs[0].path());
+        output::write_parts(folder, extension, &rendering.film, args.exposure, &request.provenance)?;
+    }
+    if let Some(path) = &args.ran {
+        write_ran(path, request, &rendering)?;
+    }
+    write_stats(args, request, &rendering, clock)
+}
+
+/// Reads and checks everything; warnings go to standard error.
+pub(crate) fn prepare(args: &Args, options: &RadianceOptions) -> Result<Prepared, Failure> {
     for message in &options.without_effect {
         console::say("note", message);
     }
-    let outputs = outputs(args)?;
     let ast = plan::parse(&args.crex)?;
-    let LoadedScene { mut scene, inputs } = scene_files::load(&args.scene.scenes, &args.scene.search)?;
+    let LoadedScene { mut scene, inputs, files } = scene_files::load(&args.scene.scenes, &args.scene.search)?;
     scene.set_relays(options.relays);
     let request = request(args, options, Program::new(&ast), inputs)?;
     let setting = Setting {
@@ -103,49 +140,41 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
     for warning in crex::warnings(&ast, &setting) {
         console::say("warning", &warning.render(&args.crex));
     }
+    Ok(Prepared { request, files, scene })
+}
 
-    let aggregate = scene.aggregate();
-    let progress = Progress::new(clock);
-    let report = |fraction| progress.set(fraction);
-    let refused = |error: RenderError| match error {
-        RenderError::Threads { .. } => Failure::Cannot(error.to_string()),
-        _ => Failure::input(error),
-    };
-    let Request { program, view, settings, .. } = &request;
-    let mut renderer = Renderer::new(&scene, &aggregate, view, program, clock, settings.clone())
-        .map_err(refused)?
-        .with_progress(&report);
-    if let Some(map) = &request.importance {
-        renderer = renderer.with_importance(map.values()).map_err(refused)?;
-    }
-    if let Some(thresholds) = &request.thresholds {
-        renderer = renderer.with_thresholds(thresholds).map_err(refused)?;
-    }
-    let rendering = match &args.snapshots {
-        None => renderer.render().map_err(refused)?,
-        Some(folder) => {
-            let mut snapshots = snapshots::Writer::new(folder, outputs[0].path(), args.exposure, &request.provenance)?;
-            let rendering = renderer.render_stages(&mut |snapshot| snapshots.write(&snapshot)).map_err(refused)?;
-            snapshots.finish()?;
-            rendering
+impl Prepared {
+    /// Renders, with a bar on standard error; `show` gets the picture after every stage.
+    pub(crate) fn render(&self, clock: &MonotonicClock, show: Option<Show<'_>>) -> Result<Rendering, Failure> {
+        let aggregate = self.scene.aggregate();
+        let progress = Progress::new(clock);
+        let report = |fraction| progress.set(fraction);
+        let refused = |error: RenderError| match error {
+            RenderError::Threads { .. } => Failure::Cannot(error.to_string()),
+            _ => Failure::input(error),
+        };
+        let Request { program, view, settings, .. } = &self.request;
+        let mut renderer = Renderer::new(&self.scene, &aggregate, view, program, clock, settings.clone())
+            .map_err(refused)?
+            .with_progress(&report);
+        if let Some(map) = &self.request.importance {
+            renderer = renderer.with_importance(map.values()).map_err(refused)?;
         }
-    };
-    progress.done();
-    for span in &rendering.stopped {
-        let text = crex::Warning { message: "`*` was stopped after a million runs".to_owned(), span: *span };
-        console::say("warning", &text.render(&args.crex));
+        if let Some(thresholds) = &self.request.thresholds {
+            renderer = renderer.with_thresholds(thresholds).map_err(refused)?;
+        }
+        let rendering = match show {
+            None => renderer.render(),
+            Some(show) => renderer.render_stages(show),
+        };
+        let rendering = rendering.map_err(refused)?;
+        progress.done();
+        for span in &rendering.stopped {
+            let text = crex::Warning { message: "`*` was stopped after a million runs".to_owned(), span: *span };
+            console::say("warning", &text.render(program.text()));
+        }
+        Ok(rendering)
     }
-    for output in &outputs {
-        output.write(&rendering.film, args.exposure, &request.provenance)?;
-    }
-    if let Some(folder) = &args.parts {
-        let extension = format_beside(outputs[0].path());
-        output::write_parts(folder, extension, &rendering.film, args.exposure, &request.provenance)?;
-    }
-    if let Some(path) = &args.ran {
-        write_ran(path, &request, &rendering)?;
-    }
-    write_stats(args, &request, &rendering, clock)
 }
 
 /// The places for the pictures, each checked, and made safe against interruption.

@@ -59,6 +59,8 @@ impl SearchArgs {
 pub(crate) struct LoadedScene {
     pub(crate) scene: Scene,
     pub(crate) inputs: Vec<Input>,
+    /// The files that were read, as they were found.
+    pub(crate) files: Vec<PathBuf>,
 }
 
 /// Reads scene files as one scene; warnings go to standard error.
@@ -71,7 +73,8 @@ pub(crate) fn load(scenes: &[PathBuf], search: &SearchArgs) -> Result<LoadedScen
     for warning in document.warnings.iter().chain(&scene.warnings) {
         console::say("warning", &warning.to_string());
     }
-    Ok(LoadedScene { inputs: inputs(&document), scene })
+    let files = document.sources.iter().map(|source| PathBuf::from(&source.name)).filter(|path| path.is_file());
+    Ok(LoadedScene { inputs: inputs(&document), files: files.collect(), scene })
 }
 
 fn source(path: &Path) -> Result<Source, Failure> {

@@ -1,0 +1,243 @@
+//! `crex stimuli`: renders the pictures of a study that are missing or stale, and keeps its manifest.
+//!
+//! A picture of a study is exactly what `crex render` makes of the words that [`words`] gives.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use ::stimuli::{Manifest, PictureRecord, PictureStatus, Request, Sha256, Stimulus, Study, Timing};
+use clap::{CommandFactory, FromArgMatches};
+use renderer::color::{Rgb, luminance_cd_m2};
+use renderer::render::Rendering;
+use renderer::schedule::{Clock, MonotonicClock};
+
+use crate::console::{self, Failure};
+use crate::{Cli, options, output, render};
+
+/// What `crex stimuli` takes.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct Args {
+    /// The study: its file, or a folder with a study.toml
+    #[arg(value_name = "STUDY", default_value = "stimuli/corridor")]
+    study: PathBuf,
+    /// Say of each picture whether it is what would be made, and render nothing; exit code 1 if one is not
+    #[arg(long, conflicts_with = "force")]
+    check: bool,
+    /// Only this picture, such as a_hq; may be repeated
+    #[arg(long, value_name = "ID")]
+    only: Vec<String>,
+    /// Render even what is as it should be
+    #[arg(long)]
+    force: bool,
+    /// Threads [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    threads: Option<u32>,
+}
+
+/// A picture to be made.
+struct Job {
+    stimulus: Stimulus,
+    request: Request,
+    status: PictureStatus,
+}
+
+/// The name and version that pictures are marked with.
+fn version() -> String {
+    format!("crex {}", env!("CARGO_PKG_VERSION"))
+}
+
+pub(crate) fn run(args: &Args, clock: &MonotonicClock) -> Result<(), Failure> {
+    let study = Study::load(&args.study).map_err(failure)?;
+    let mut manifest = Manifest::load(&study.folder).map_err(failure)?;
+    let jobs = jobs(&study, &manifest, &args.only)?;
+    if args.check {
+        return check(&jobs);
+    }
+    let jobs: Vec<Job> = jobs.into_iter().filter(|job| args.force || job.status != PictureStatus::Fresh).collect();
+    if jobs.is_empty() {
+        console::say("note", "every picture is what would be made");
+        return Ok(());
+    }
+    output::clean_up_when_interrupted(jobs.iter().map(|job| study.folder.join(job.stimulus.file())).collect());
+    for (i, job) in jobs.iter().enumerate() {
+        let id = job.stimulus.id();
+        console::say("note", &format!("{} of {}: {id}, {}", i + 1, jobs.len(), word(&job.status)));
+        let (record, timing) = make(&study, job, args.threads, clock).map_err(|failure| match failure {
+            Failure::Input(message) => Failure::Input(format!("{}: picture {id}: {message}", args.study.display())),
+            other => other,
+        })?;
+        console::say("note", &format!("{id}: {:.1} s, {:.2} cd/m2", timing.seconds, record.mean_luminance_cd_m2));
+        manifest.study.clone_from(&study.id);
+        manifest.pictures.insert(id.clone(), record);
+        manifest.timings.insert(id, timing);
+        forget_strangers(&study, &mut manifest);
+        manifest.save(&study.folder).map_err(failure)?;
+    }
+    Ok(())
+}
+
+/// The pictures of the study, or those of them that were asked for.
+fn jobs(study: &Study, manifest: &Manifest, only: &[String]) -> Result<Vec<Job>, Failure> {
+    let stimuli = study.stimuli();
+    if let Some(unknown) = only.iter().find(|only| !stimuli.iter().any(|stimulus| stimulus.id() == **only)) {
+        let known: Vec<String> = stimuli.iter().map(Stimulus::id).collect();
+        let message = format!("--only {unknown}: the study shows no such picture; it shows {}", known.join(", "));
+        return Err(Failure::input(message));
+    }
+    stimuli
+        .into_iter()
+        .filter(|stimulus| only.is_empty() || only.contains(&stimulus.id()))
+        .filter_map(|stimulus| Some((study.request(&stimulus)?, stimulus)))
+        .map(|(request, stimulus)| {
+            let status = manifest.status(&study.folder, &stimulus.id(), &request, &version()).map_err(failure)?;
+            Ok(Job { stimulus, request, status })
+        })
+        .collect()
+}
+
+/// One line a picture; fails if one is not what would be made.
+fn check(jobs: &[Job]) -> Result<(), Failure> {
+    let lines: String = jobs.iter().map(|job| format!("{}: {}\n", job.stimulus.id(), word(&job.status))).collect();
+    console::print(&lines)?;
+    let wrong = jobs.iter().filter(|job| job.status != PictureStatus::Fresh).count();
+    if wrong == 0 {
+        return Ok(());
+    }
+    Err(Failure::Cannot(format!(
+        "{wrong} of {} pictures are not what would be made; `crex stimuli` renders them",
+        jobs.len()
+    )))
+}
+
+fn word(status: &PictureStatus) -> String {
+    match status {
+        PictureStatus::Fresh => "as it would be made".to_owned(),
+        PictureStatus::Missing => "missing".to_owned(),
+        PictureStatus::Altered => "altered: not the file that was written".to_owned(),
+        PictureStatus::Stale(changed) => format!("stale: changed since are {}", changed.join(", ")),
+    }
+}
+
+/// Renders one picture and says how it came about.
+fn make(
+    study: &Study,
+    job: &Job,
+    threads: Option<u32>,
+    clock: &MonotonicClock,
+) -> Result<(PictureRecord, Timing), Failure> {
+    let begun_s = clock.now_s();
+    let file = job.stimulus.file();
+    let path = study.folder.join(&file);
+    let (args, radiance) = parsed(words(&job.request, &study.folder, &path, threads))?;
+    let prepared = render::prepare(&args, &radiance)?;
+    let settings = &prepared.request.settings;
+    let (width, height) = (job.request.width_px as usize, job.request.height_px as usize);
+    if (settings.width, settings.height) != (width, height) {
+        let message = format!(
+            "{}: this view makes {} x {} pixels of the study's {width} x {height}; change its -vh or -vv so that pixels are square",
+            study.folder.join(&job.request.view).display(),
+            settings.width,
+            settings.height
+        );
+        return Err(Failure::input(message));
+    }
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::Cannot(format!("{}: {error}", folder.display())))?;
+    }
+    // What was read, and not what may be there when the rendering has ended.
+    let inputs = inputs(study, &job.request, &prepared.files)?;
+    let rendering = prepared.render(clock, None)?;
+    output::write_film(&path, &rendering.film, job.request.exposure, &prepared.request.provenance)?;
+    let record = PictureRecord {
+        layout: job.stimulus.layout.clone(),
+        quality: job.stimulus.quality.clone(),
+        file,
+        sha256: Sha256::of_file(&path).map_err(failure)?,
+        request: job.request.clone(),
+        inputs,
+        rays: rays(&rendering),
+        mean_luminance_cd_m2: mean_luminance_cd_m2(&rendering),
+        version: version(),
+    };
+    let threads = settings.threads.or_else(|| std::thread::available_parallelism().ok().map(usize::from));
+    Ok((record, Timing { seconds: clock.now_s() - begun_s, threads: threads.unwrap_or(1) }))
+}
+
+/// The words behind `crex` that make a picture.
+fn words(request: &Request, folder: &Path, picture: &Path, threads: Option<u32>) -> Vec<OsString> {
+    let mut words: Vec<OsString> = vec!["crex".into(), "render".into()];
+    words.extend(request.scene.iter().map(|file| folder.join(file).into()));
+    words.extend(["-vf".into(), folder.join(&request.view).into()]);
+    words.extend(["-x".into(), request.width_px.to_string().into()]);
+    words.extend(["-y".into(), request.height_px.to_string().into()]);
+    words.push("-av".into());
+    words.extend(request.ambient.iter().map(|channel| channel.to_string().into()));
+    words.extend(request.options.iter().map(OsString::from));
+    words.extend(["--crex".into(), request.crex.clone().into()]);
+    words.extend(["--spp".into(), request.spp.to_string().into()]);
+    words.extend(["--seed".into(), request.seed.to_string().into()]);
+    words.extend(["--exposure".into(), request.exposure.to_string().into()]);
+    if let Some(map) = &request.importance {
+        words.extend(["--importance".into(), folder.join(map).into()]);
+    }
+    if !request.thresholds.is_empty() {
+        let list: Vec<String> = request.thresholds.iter().map(f32::to_string).collect();
+        words.extend(["--thresholds".into(), list.join(",").into()]);
+    }
+    if let Some(threads) = threads {
+        words.extend(["--threads".into(), threads.to_string().into()]);
+    }
+    words.extend(["-o".into(), picture.into()]);
+    words
+}
+
+/// The words of a `crex render`, read as the command line is.
+fn parsed(words: Vec<OsString>) -> Result<(render::Args, options::RadianceOptions), Failure> {
+    let (words, radiance) = crate::radiance_options(words)?;
+    let matches = Cli::command().try_get_matches_from(words).map_err(Failure::Usage)?;
+    match Cli::from_arg_matches(&matches).map_err(Failure::Usage)?.command {
+        crate::Command::Render(args) => Ok((*args, radiance)),
+        _ => unreachable!("the words begin with `crex render`"),
+    }
+}
+
+/// Digests of all files that were read, by their paths from the study's folder.
+fn inputs(study: &Study, request: &Request, scene: &[PathBuf]) -> Result<BTreeMap<PathBuf, Sha256>, Failure> {
+    let own = std::iter::once(&request.view).chain(&request.importance).map(|file| study.folder.join(file));
+    scene
+        .iter()
+        .cloned()
+        .chain(own)
+        .map(|path| {
+            let digest = Sha256::of_file(&path).map_err(failure)?;
+            let name = path.strip_prefix(&study.folder).map(Path::to_owned).unwrap_or(path);
+            Ok((name, digest))
+        })
+        .collect()
+}
+
+fn rays(rendering: &Rendering) -> BTreeMap<String, u64> {
+    let mut rays = BTreeMap::from([("primary".to_owned(), rendering.primary.rays)]);
+    for row in &rendering.stages {
+        *rays.entry(row.stage.component.to_string()).or_default() += row.report.rays;
+    }
+    rays
+}
+
+fn mean_luminance_cd_m2(rendering: &Rendering) -> f64 {
+    let beauty = rendering.film.beauty();
+    let sum: Rgb = beauty.values().iter().map(|pixel| pixel.as_dvec3()).sum();
+    luminance_cd_m2(sum / beauty.values().len() as f64)
+}
+
+/// Drops what the study no longer shows.
+fn forget_strangers(study: &Study, manifest: &mut Manifest) {
+    let shown: Vec<String> = study.stimuli().iter().map(Stimulus::id).collect();
+    manifest.pictures.retain(|id, _| shown.contains(id));
+    manifest.timings.retain(|id, _| shown.contains(id));
+}
+
+fn failure(error: ::stimuli::Error) -> Failure {
+    if error.is_input() { Failure::input(error) } else { Failure::Cannot(error.to_string()) }
+}

@@ -1,0 +1,145 @@
+//! `crex stimuli` from outside, on a study of tiny pictures.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot start has failed")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use renderer::picture::{Provenance, grey};
+use renderer::raster::Raster;
+use stimuli::{Manifest, Stimulus, Study};
+
+/// The shipped corridor.
+fn corridor() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../stimuli/corridor")
+}
+
+fn crex_stimuli(study: &Path, words: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crex"));
+    command.arg("stimuli").arg(study).args(words).stdin(Stdio::null()).output().unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A folder with the corridor's study file, but pictures of 20 x 16 pixels of a lamp, a wall and a pane.
+fn tiny_study() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let text = std::fs::read_to_string(corridor().join("study.toml")).unwrap();
+    let text = text.replace("width_px = 1280", "width_px = 20").replace("height_px = 1024", "height_px = 16");
+    let lines = text.lines().map(|line| if line.starts_with("spp = ") { "spp = 2" } else { line });
+    write("study.toml", &lines.collect::<Vec<_>>().join("\n"));
+    for view in ["corridor.vf", "practice.vf"] {
+        std::fs::copy(corridor().join(view), folder.path().join(view)).unwrap();
+    }
+    write(
+        "materials.rad",
+        "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 9 9 9\nvoid glass pane 0 0 3 .9 .9 .9\n",
+    );
+    write("shell.rad", "!genbox grey room 4 20 4 -i | xform -t -1 -5 0\n!xform -t 0 9 0 pane.rad\n");
+    write("pane.rad", "pane polygon pane 0 0 12 0 0 0  3 0 0  3 0 3  0 0 3\n");
+    for layout in ["layout_a.rad", "layout_b.rad", "practice_a.rad", "practice_b.rad"] {
+        write(layout, "lamp sphere lamp 0 0 4 1.3 5 2 .2\n");
+    }
+    std::fs::create_dir(folder.path().join("maps")).unwrap();
+    for map in ["maps/a.png", "maps/b.png"] {
+        let values = Raster::from_values(2, 1, vec![0.0, 1.0]).unwrap();
+        grey::write(&folder.path().join(map), &values, &Provenance::default()).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn pictures_are_rendered_once_and_again_when_something_changed() {
+    let folder = tiny_study();
+    let study = folder.path();
+    let check = crex_stimuli(study, &["--check"]);
+    assert_eq!(code(&check), 1);
+    assert!(stdout(&check).contains("a_hq: missing"), "{}", stdout(&check));
+    assert!(!study.join("pictures").exists(), "a check renders nothing");
+
+    let made = crex_stimuli(study, &[]);
+    assert_eq!(code(&made), 0, "{}", stderr(&made));
+    let check = crex_stimuli(study, &["--check"]);
+    assert_eq!(code(&check), 0, "{}", stdout(&check));
+    let first = Manifest::load(study).unwrap();
+    let shown: Vec<String> = Study::load(study).unwrap().stimuli().iter().map(Stimulus::id).collect();
+    assert!(shown.iter().all(|id| first.pictures.contains_key(id)) && shown.len() == first.pictures.len());
+
+    let again = crex_stimuli(study, &[]);
+    assert!(stderr(&again).contains("every picture is what would be made"), "{}", stderr(&again));
+    assert_eq!(Manifest::load(study).unwrap(), first);
+
+    // A file that only another scene file names is an input too.
+    let pane = std::fs::read_to_string(study.join("pane.rad")).unwrap();
+    std::fs::write(study.join("pane.rad"), pane.replace("0 0 3\n", "0 0 2.9\n")).unwrap();
+    let check = crex_stimuli(study, &["--check"]);
+    assert!(stdout(&check).contains("a_hq: stale: changed since are pane.rad"), "{}", stdout(&check));
+    let one = crex_stimuli(study, &["--only", "b_hq"]);
+    assert_eq!(code(&one), 0, "{}", stderr(&one));
+    let second = Manifest::load(study).unwrap();
+    assert_ne!(second.pictures["b_hq"], first.pictures["b_hq"]);
+    assert_eq!(second.pictures["a_hq"], first.pictures["a_hq"]);
+}
+
+#[test]
+fn the_manifest_says_what_was_traced_and_the_same_comes_out_again() {
+    let folder = tiny_study();
+    let study = folder.path();
+    let made = crex_stimuli(study, &["--only", "a_cbq", "--threads", "1"]);
+    assert_eq!(code(&made), 0, "{}", stderr(&made));
+    let first = Manifest::load(study).unwrap();
+    let record = &first.pictures["a_cbq"];
+    assert_eq!(record.rays["primary"], 20 * 16 * 2);
+    assert!(record.rays.get("D").is_none_or(|&rays| rays == 0), "T{{RSGM}} traces no D");
+    assert!(record.rays["T"] > 0);
+    let inputs: Vec<_> = record.inputs.keys().map(|path| path.to_str().unwrap()).collect();
+    assert_eq!(inputs, ["corridor.vf", "layout_a.rad", "maps/a.png", "materials.rad", "pane.rad", "shell.rad"]);
+    assert!(record.mean_luminance_cd_m2 > 0.0);
+
+    std::fs::write(study.join(&record.file), "painted over").unwrap();
+    let check = crex_stimuli(study, &["--check", "--only", "a_cbq"]);
+    assert_eq!(code(&check), 1);
+    assert!(stdout(&check).contains("a_cbq: altered"), "{}", stdout(&check));
+    assert_eq!(code(&crex_stimuli(study, &["--only", "a_cbq", "--threads", "2"])), 0);
+    assert_eq!(Manifest::load(study).unwrap().pictures, first.pictures, "two threads make the same bytes as one");
+}
+
+#[test]
+fn wrong_input_is_told_and_renders_nothing() {
+    let folder = tiny_study();
+    let study = folder.path();
+    let text = std::fs::read_to_string(study.join("study.toml")).unwrap();
+    let altered = |from: &str, to: &str| {
+        assert!(text.contains(from));
+        std::fs::write(study.join("study.toml"), text.replace(from, to)).unwrap();
+    };
+    for (from, to, said) in [
+        ("width_px = 20", "width_px = 21", "square"),
+        ("crex = \"T{RSGM}\"", "crex = \"T{RSGm}\"", "`m`"),
+        ("\"-lw\"", "\"-lww\"", "did you mean `-lw`"),
+        ("\"shell.rad\"", "\"shed.rad\"", "shed.rad"),
+        ("rank = 3", "rank = -3", "study.toml:"),
+    ] {
+        altered(from, to);
+        let output = crex_stimuli(study, &["--only", "a_cbq"]);
+        assert_eq!(code(&output), 2, "{to}: {}", stderr(&output));
+        assert!(stderr(&output).contains(said), "{to}: {}", stderr(&output));
+    }
+    altered("rank = 3", "rank = 3");
+    let output = crex_stimuli(study, &["--only", "a_uhq"]);
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("a_hq, a_cbq"), "{}", stderr(&output));
+    assert_eq!(code(&crex_stimuli(&study.join("nowhere"), &[])), 2);
+    assert!(!study.join("manifest.json").exists());
+}
