@@ -17,14 +17,16 @@ pub struct Condition {
     pub label: &'static str,
     /// Whether the answer is a number.
     pub number: bool,
+    /// What an empty field means, in words.
+    pub if_empty: &'static str,
 }
 
 const fn number(name: &'static str, label: &'static str) -> Condition {
-    Condition { name, label, number: true }
+    Condition { name, label, number: true, if_empty: "not measured" }
 }
 
 const fn words(name: &'static str, label: &'static str) -> Condition {
-    Condition { name, label, number: false }
+    Condition { name, label, number: false, if_empty: "not measured" }
 }
 
 /// Everything that is asked besides the code and the confirmation; the first two give the pixels per degree.
@@ -37,8 +39,8 @@ pub const CONDITIONS: [Condition; 10] = [
     words("gamma", "Gamma, or how the display was calibrated"),
     words("acuity", "Visual acuity, and how it was tested"),
     words("colour_vision", "Colour vision, and how it was tested"),
-    number("age_years", "Age, years (optional)"),
-    words("gender", "Gender (optional)"),
+    Condition { if_empty: "not given", ..number("age_years", "Age, years (optional)") },
+    Condition { if_empty: "not given", ..words("gender", "Gender (optional)") },
 ];
 
 /// How far the pixels per degree may be from the study's, as a share of it.

@@ -132,6 +132,7 @@ impl<'a> Desk<'a> {
     /// Alt-F4 and its like end nothing that has begun.
     fn close_requested(&mut self, context: &egui::Context) {
         match &self.phase {
+            _ if self.exit.is_some() => {} // this program's own wish
             Phase::Session(_) => context.send_viewport_cmd(egui::ViewportCommand::CancelClose),
             Phase::Refused(why) => self.exit = Some(Exit::Refused(why.clone())),
             _ => self.exit = Some(Exit::Unbegun),
@@ -205,6 +206,8 @@ impl<'a> Desk<'a> {
 
     fn set_up(&mut self, ui: &mut Ui, strokes: &[Stroke]) {
         self.wait_for_frame(None);
+        // Enter begins; left to egui it would also press whatever has the focus.
+        ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Enter));
         let [width, height] = window_px(ui.ctx());
         let facts = format!(
             "Window {width} x {height} pixels, scale {}. Refresh not verified. Data go to {}.",

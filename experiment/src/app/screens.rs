@@ -34,6 +34,8 @@ pub(super) fn style(context: &egui::Context) {
         ]
         .into();
         style.spacing.item_spacing = Vec2::new(12.0, 12.0);
+        style.spacing.icon_width = 22.0;
+        style.spacing.icon_width_inner = 14.0;
         style.animation_time = 0.0;
     });
 }
@@ -166,7 +168,8 @@ pub(super) enum SetUp {
 /// The experimenter's screen. It never names the arm.
 pub(super) fn set_up(ui: &mut Ui, study: &Study, form: &mut Form, facts: &str, problem: &str) -> SetUp {
     let mut act = SetUp::Stay;
-    egui::CentralPanel::default().show(ui, |ui| {
+    let frame = egui::Frame::central_panel(ui.style()).inner_margin(32.0);
+    egui::CentralPanel::default().frame(frame).show(ui, |ui| {
         egui::ScrollArea::vertical().show(ui, |ui| {
             ui.heading(&study.title);
             ui.label(RichText::new(facts).small());
@@ -179,11 +182,11 @@ pub(super) fn set_up(ui: &mut Ui, study: &Study, form: &mut Form, facts: &str, p
                     response
                 };
                 let code = field("Participant's code (no name)", &mut form.code, "P01");
-                if code.ctx.memory(|memory| memory.focused().is_none()) && form.code.is_empty() {
+                if code.ctx.memory(|memory| memory.focused().is_none()) {
                     code.request_focus();
                 }
                 for (condition, answer) in CONDITIONS.iter().zip(&mut form.answers) {
-                    field(condition.label, answer, "not measured");
+                    field(condition.label, answer, condition.if_empty);
                 }
             });
             ui.label(form.advice(study));
