@@ -33,7 +33,7 @@ pub struct Settings {
     pub samples: u32,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// `-pj`: how much of a pixel's extent its samples cover, in [0,1].
+    /// `-pj`: how much of a pixel's extent its samples cover, in [0, 1].
     pub jitter: f64,
     /// Where paths end and how they branch.
     pub limits: Limits,
@@ -163,7 +163,7 @@ impl<'a> Renderer<'a> {
         Ok(Self { scene, aggregate, view, program, clock, settings, importance, thresholds, progress })
     }
 
-    /// Modulates `{ }` by a map of values in [0,1], of the picture's size.
+    /// Modulates `{ }` by a map of values in [0, 1], of the picture's size.
     ///
     /// # Errors
     /// If the size or a value does not fit.
@@ -182,7 +182,7 @@ impl<'a> Renderer<'a> {
     /// Sets the thresholds of the members of all `{ }`, from left to right.
     ///
     /// # Errors
-    /// If their number does not fit the crex, or a value does not lie in [0,1].
+    /// If their number does not fit the crex, or a value does not lie in [0, 1].
     pub fn with_thresholds(self, thresholds: &'a [f32]) -> Result<Self, RenderError> {
         Scheduler::new(self.program, Some(thresholds))?;
         Ok(Self { thresholds: Some(thresholds), ..self })

@@ -1,6 +1,6 @@
 //! All shapes of a scene in a bounding volume hierarchy. The only file that names obvhs.
 //!
-//! The hierarchy is traversed in `f32`, in a frame where the scene fills [-1,1]^3; its boxes are rounded outward and
+//! The hierarchy is traversed in `f32`, in a frame where the scene fills [-1, 1]^3; its boxes are rounded outward and
 //! padded by more than that arithmetic can err, and the leaves are met in `f64`. So no hit is lost, whatever the unit or
 //! the place of the scene, and the answer is the one of testing every shape.
 

@@ -68,7 +68,7 @@ impl<'a> Arguments<'a> {
         self.take(name, "a finite number, 0 or more", |x| (0.0..f64::INFINITY).contains(&x))
     }
 
-    /// The next argument, in [0,1].
+    /// The next argument, in [0, 1].
     pub(super) fn fraction(&mut self, name: &'static str) -> Result<f64, ArgumentError> {
         self.take(name, "a fraction from 0 to 1", |x| (0.0..=1.0).contains(&x))
     }

@@ -1,6 +1,6 @@
 //! How much a smooth surface reflects.
 
-/// Value subtracted from the exponential of [`approximate`], so that it nearly vanishes at normal incidence.
+/// Value subtracted from the exponential of `approximate`, so that it nearly vanishes at normal incidence.
 ///
 /// This is the constant of Radiance releases from 2023-03 to 2026-06, with which the reference pictures in the tests
 /// were made; other releases have [`FRESNEL_OFFSET_EXACT`]. Smooth plastic seen head on differs by .00085 between them.

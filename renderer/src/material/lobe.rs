@@ -52,7 +52,7 @@ pub enum Spread {
 /// How a rough lobe is sampled: rpict's `-ss`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlossySampling {
-    /// In [0,1]: how much of the lobe's width is sampled; 0 gives the ideal direction.
+    /// In [0, 1]: how much of the lobe's width is sampled; 0 gives the ideal direction.
     pub width: f64,
     /// Weigh each direction by 2/(1 + cos_in/cos_out) and count those below the surface as dark, as rpict does when it
     /// takes several samples of a lobe; otherwise each weighs 1 and those below the surface are drawn again.

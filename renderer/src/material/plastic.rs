@@ -16,7 +16,7 @@ impl Plastic {
     /// From `R G B specularity roughness`.
     ///
     /// # Errors
-    /// If their number is not 5, a colour is negative, the specularity lies outside [0,1] or the roughness is negative.
+    /// If their number is not 5, a colour is negative, the specularity lies outside [0, 1] or the roughness is negative.
     pub fn from_reals(reals: &[f64]) -> Result<Self, ArgumentError> {
         let mut arguments = Arguments::new(reals, &[5], "5", "red green blue specularity roughness")?;
         let color = arguments.color()?;

@@ -27,7 +27,7 @@ pub(super) fn significant(fraction: f64) -> f64 {
 /// The finish of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Finish {
-    /// Specular fraction, in [0,1].
+    /// Specular fraction, in [0, 1].
     pub(super) specularity: f64,
     /// Ward's alpha, 0 or more.
     pub(super) roughness: f64,

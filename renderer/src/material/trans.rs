@@ -26,7 +26,7 @@ impl Trans {
     /// From `R G B specularity roughness transmissivity transmitted-specularity`.
     ///
     /// # Errors
-    /// If their number is not 7, a colour or the roughness is negative, or one of the fractions lies outside [0,1].
+    /// If their number is not 7, a colour or the roughness is negative, or one of the fractions lies outside [0, 1].
     pub fn from_reals(reals: &[f64]) -> Result<Self, ArgumentError> {
         let names = "red green blue specularity roughness transmissivity transmitted-specularity";
         let mut arguments = Arguments::new(reals, &[7], "7", names)?;

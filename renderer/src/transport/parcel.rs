@@ -27,7 +27,7 @@ pub struct Samples<'a> {
     pub width: usize,
     /// Rows of the whole picture.
     pub height: usize,
-    /// `-pj`: how much of a pixel's extent its samples cover, in [0,1]; 1 is a box filter, 0 samples the centre.
+    /// `-pj`: how much of a pixel's extent its samples cover, in [0, 1]; 1 is a box filter, 0 samples the centre.
     pub jitter: f64,
 }
 

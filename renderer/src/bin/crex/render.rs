@@ -47,7 +47,7 @@ pub(crate) struct Args {
     /// The event of a path that says in which layer its light is filed
     #[arg(long, value_name = "WHICH", default_value = "last")]
     layers: LayerChoice,
-    /// How much each pixel matters, for { }: a grey .png or an .exr with values in [0,1]
+    /// How much each pixel matters, for { }: a grey .png or an .exr with values in [0, 1]
     #[arg(long, value_name = "MAP")]
     importance: Option<PathBuf>,
     /// Importance that each member of each { } needs, from left to right, in place of i/(n+1)
