@@ -21,6 +21,7 @@ pub mod plan;
 pub mod power;
 pub mod proportion;
 pub mod provenance;
+pub mod psychometric;
 pub mod report;
 pub mod sessions;
 pub mod special;

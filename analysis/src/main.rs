@@ -5,16 +5,21 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use analysis::plan::Plan;
+use analysis::power::Question;
 use analysis::proportion::Proportion;
+use analysis::report::planning::{Planning, Request, bound_of};
 use analysis::report::{self, Options, Report};
 use analysis::tally::ArmTally;
-use clap::Parser;
+use clap::{Args, Parser, Subcommand};
 
 /// Computes what session logs show, and writes it as HTML, Markdown, JSON or CSV.
 #[derive(Parser)]
-#[command(name = "crex-report", version)]
+#[command(name = "crex-report", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 struct Arguments {
-    /// Session logs (CSV), all of one study
+    #[command(subcommand)]
+    command: Option<Command>,
+
+    /// Session logs (CSV), all of one study; a folder stands for every log in it and below
     #[arg(value_name = "LOG", required_unless_present = "counts", conflicts_with = "counts")]
     logs: Vec<PathBuf>,
 
@@ -39,6 +44,69 @@ struct Arguments {
     /// their crex and cost
     #[arg(long, value_name = "DIR")]
     stimuli: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// How many people a study takes, exactly, and what a number of people can show
+    Power(PowerArguments),
+}
+
+#[derive(Args)]
+struct PowerArguments {
+    /// Probability that a person is right; .75 where noticing is to be found, .5 where equivalence is to be shown
+    #[arg(long, value_name = "P", value_parser = parse_probability)]
+    truth: Option<f64>,
+
+    /// Plan for showing equivalence within 1/2 plus or minus this proportion
+    #[arg(long, value_name = "P", value_parser = parse_bound)]
+    bound: Option<f64>,
+
+    /// The same bound in JOD (1 JOD is a proportion of .75)
+    #[arg(long, value_name = "JOD", conflicts_with = "bound", value_parser = parse_jod)]
+    jod: Option<f64>,
+
+    /// Power aimed at; may be given several times
+    #[arg(long, value_name = "P", default_values_t = [0.8, 0.9], value_parser = parse_probability)]
+    target: Vec<f64>,
+
+    /// Level of the tests
+    #[arg(long, value_name = "P", default_value_t = 0.05, value_parser = parse_level)]
+    alpha: f64,
+
+    /// Say what this many people in an arm can and cannot show
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    n: Option<u64>,
+
+    /// Where to write; the format is the ending: .html, .md, .json, or .csv for the curve
+    #[arg(short, value_name = "OUT")]
+    out: Vec<PathBuf>,
+
+    /// Print the answer as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// A number inside an open range.
+fn parse_between(text: &str, low: f64, high: f64) -> Result<f64, String> {
+    let inside = text.parse().ok().filter(|value| low < *value && *value < high);
+    inside.ok_or_else(|| format!("expected a number between {low} and {high}"))
+}
+
+fn parse_probability(text: &str) -> Result<f64, String> {
+    parse_between(text, 0.0, 1.0)
+}
+
+fn parse_bound(text: &str) -> Result<f64, String> {
+    parse_between(text, 0.0, 0.5)
+}
+
+fn parse_jod(text: &str) -> Result<f64, String> {
+    parse_between(text, 0.0, 10.0)
+}
+
+fn parse_level(text: &str) -> Result<f64, String> {
+    parse_between(text, 0.0, 0.5)
 }
 
 #[derive(Clone)]
@@ -83,31 +151,72 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for out in &arguments.out {
-        if format_of(out).is_none() {
-            return Err(Failure::Input(format!(
-                "-o {}: expected an ending of .html, .md, .json or .csv",
-                out.display()
-            )));
-        }
+    if let Some(Command::Power(asked)) = &arguments.command {
+        return power(asked);
     }
+    let formats: [Format<Report>; 4] =
+        [("html", Report::to_html), ("md", Report::to_markdown), ("json", Report::to_json), ("csv", Report::to_csv)];
+    check_endings(&arguments.out, &formats)?;
     let options = arguments.stimuli.as_deref().map(read_study).transpose()?.unwrap_or_default();
     let report = make(arguments, &options)?;
-    for out in &arguments.out {
-        write_whole(out, &format_of(out).map(|write| write(&report)).unwrap_or_default())
-            .map_err(|error| Failure::Machine(format!("{}: {error}", out.display())))?;
+    deliver(&report, &arguments.out, &formats, arguments.json)
+}
+
+fn power(asked: &PowerArguments) -> Result<(), Failure> {
+    let formats: [Format<Planning>; 4] = [
+        ("html", Planning::to_html),
+        ("md", Planning::to_markdown),
+        ("json", Planning::to_json),
+        ("csv", Planning::to_csv),
+    ];
+    check_endings(&asked.out, &formats)?;
+    let question = match bound_of(asked.bound, asked.jod) {
+        Some(bound) => Question::Equivalence { truth: asked.truth.unwrap_or(0.5), bound: bound.proportion },
+        None => Question::Superiority { truth: asked.truth.unwrap_or(0.75) },
+    };
+    let request = Request { question, targets: asked.target.clone(), alpha: asked.alpha, n: asked.n };
+    deliver(&Planning::new(&request), &asked.out, &formats, asked.json)
+}
+
+/// A file's ending and what writes it.
+type Format<T> = (&'static str, fn(&T) -> String);
+
+fn format_of<T>(out: &Path, formats: &[Format<T>]) -> Option<fn(&T) -> String> {
+    let ending = out.extension()?.to_str()?;
+    formats.iter().find(|(known, _)| *known == ending).map(|(_, write)| *write)
+}
+
+fn check_endings<T>(outs: &[PathBuf], formats: &[Format<T>]) -> Result<(), Failure> {
+    match outs.iter().find(|out| format_of(out, formats).is_none()) {
+        None => Ok(()),
+        Some(out) => {
+            Err(Failure::Input(format!("-o {}: expected an ending of .html, .md, .json or .csv", out.display())))
+        }
     }
-    if arguments.json {
-        print(&report.to_json())?;
-    } else if arguments.out.is_empty() {
-        print(&report.to_markdown())?;
+}
+
+/// Writes what was asked for; Markdown to standard output where nothing was.
+fn deliver<T>(value: &T, outs: &[PathBuf], formats: &[Format<T>], json: bool) -> Result<(), Failure> {
+    for out in outs {
+        let text = format_of(out, formats).map(|write| write(value)).unwrap_or_default();
+        write_whole(out, &text).map_err(|error| Failure::Machine(format!("{}: {error}", out.display())))?;
     }
-    Ok(())
+    let printed = if json {
+        Some("json")
+    } else if outs.is_empty() {
+        Some("md")
+    } else {
+        None
+    };
+    match printed.and_then(|ending| formats.iter().find(|(known, _)| *known == ending)) {
+        Some((_, write)) => print(&write(value)),
+        None => Ok(()),
+    }
 }
 
 fn make(arguments: &Arguments, options: &Options) -> Result<Report, Failure> {
     if arguments.counts.is_empty() {
-        return report::of_logs(&arguments.logs, options).map_err(|error| {
+        return report::of_logs(&expand(&arguments.logs)?, options).map_err(|error| {
             if error.is_input() { Failure::Input(error.to_string()) } else { Failure::Machine(error.to_string()) }
         });
     }
@@ -128,6 +237,37 @@ fn make(arguments: &Arguments, options: &Options) -> Result<Report, Failure> {
     Ok(report::of_counts(&arms, typed, options))
 }
 
+/// Folders replaced by the logs in them and below: the CSV files that have their sidecar, in order of name.
+fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut logs = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            logs.push(path.clone());
+            continue;
+        }
+        let before = logs.len();
+        collect(path, &mut logs).map_err(|error| Failure::Machine(format!("{}: {error}", path.display())))?;
+        logs[before..].sort();
+        if logs.len() == before {
+            let expected = "expected session logs in it (CSV files with their JSON sidecar beside them)";
+            return Err(Failure::Input(format!("{}: {expected}", path.display())));
+        }
+    }
+    Ok(logs)
+}
+
+fn collect(folder: &Path, logs: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let (path, kind) = entry.and_then(|entry| Ok((entry.path(), entry.file_type()?)))?;
+        if kind.is_dir() {
+            collect(&path, logs)?;
+        } else if path.extension().is_some_and(|ending| ending == "csv") && path.with_extension("json").is_file() {
+            logs.push(path);
+        }
+    }
+    Ok(())
+}
+
 fn read_study(path: &Path) -> Result<Options, Failure> {
     let failure = |error: stimuli::Error| {
         if error.is_input() { Failure::Input(error.to_string()) } else { Failure::Machine(error.to_string()) }
@@ -137,16 +277,6 @@ fn read_study(path: &Path) -> Result<Options, Failure> {
         .ok_or_else(|| Failure::Input(format!("{}: expected an equivalence bound between 0 and .5", path.display())))?;
     let pictures = analysis::pictures::load(&study.folder).map_err(failure)?;
     Ok(Options { plan: Some(plan), pictures: Some(pictures).filter(|(pictures, _)| !pictures.is_empty()) })
-}
-
-fn format_of(out: &Path) -> Option<fn(&Report) -> String> {
-    match out.extension()?.to_str()? {
-        "html" => Some(Report::to_html),
-        "md" => Some(Report::to_markdown),
-        "json" => Some(Report::to_json),
-        "csv" => Some(Report::to_csv),
-        _ => None,
-    }
 }
 
 /// Writes beside the file and renames, so that no half of a report is ever there.

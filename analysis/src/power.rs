@@ -106,7 +106,13 @@ impl Reach {
         if n == 0 {
             return None;
         }
-        let power = |truth: f64| binomial::power(n, truth, alpha);
+        let rejected = binomial::rejects_up_to(n, alpha);
+        let power = |truth: f64| {
+            rejected.map_or(0.0, |k| {
+                let (low, high) = (binomial::ln_at_most(k, n, truth), binomial::ln_at_least(n - k, n, truth));
+                (low.exp() + high.exp()).min(1.0)
+            })
+        };
         let rising = |reached: &dyn Fn(f64) -> bool, mut low: f64, mut high: f64| {
             reached(high).then(|| {
                 for _ in 0..50 {
@@ -118,7 +124,7 @@ impl Reach {
         };
         Some(Self {
             n,
-            least_significant: binomial::rejects_up_to(n, alpha).map(|k| n - k),
+            least_significant: rejected.map(|k| n - k),
             power: [0.6, 0.7, 0.75, 0.8, 0.9].map(|truth| (truth, power(truth))).to_vec(),
             smallest_bound: rising(&|bound| equivalence::passing(n, bound, alpha).is_some(), 0.0, 0.5 - 1e-9),
             detectable: rising(&|truth| power(truth) >= 0.8, 0.5, 1.0 - 1e-9),

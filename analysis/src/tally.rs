@@ -44,6 +44,8 @@ pub struct ArmTally {
     pub layouts: BTreeMap<[String; 2], Proportion>,
     /// Right answers by the layout that was of the lower quality.
     pub correct_by_layout: BTreeMap<String, Proportion>,
+    /// The quality whose telling is right, by name.
+    pub lower_quality: Option<String>,
     /// Right answers by stated confidence.
     pub confidence: BTreeMap<u8, Proportion>,
     /// Counting, by quality.
@@ -83,10 +85,13 @@ impl ArmTally {
             self.right_answer = true;
             self.correct.count(correct);
             let order = self.order.get_or_insert_default();
-            let (half, layout) = match lower {
-                Interval::Second => (&mut order.lower_second, &trial.second_layout),
-                Interval::First => (&mut order.lower_first, &trial.first_layout),
+            let (half, layout, quality) = match lower {
+                Interval::Second => (&mut order.lower_second, &trial.second_layout, &trial.second_quality),
+                Interval::First => (&mut order.lower_first, &trial.first_layout, &trial.first_quality),
             };
+            if self.lower_quality.is_none() {
+                self.lower_quality = Some(quality.clone());
+            }
             half.count(second);
             self.correct_by_layout.entry(layout.clone()).or_default().count(correct);
             if let Some(confidence) = trial.confidence {

@@ -109,6 +109,8 @@ pub struct ArmReport {
     pub arm: String,
     /// Whether an answer can be right.
     pub right_answer: bool,
+    /// The quality whose telling is right; none where that is not known.
+    pub lower_quality: Option<String>,
     /// Participants.
     pub n: u64,
     /// Participants whose answer was right; none where no answer is.
@@ -235,6 +237,7 @@ impl ArmReport {
         let mut report = Self {
             arm: name.to_owned(),
             right_answer: tally.right_answer,
+            lower_quality: tally.lower_quality.clone(),
             n: tally.n,
             correct: tally.right_answer.then_some(tally.correct.k),
             proportion: if right { tally.correct.value() } else { None },

@@ -258,6 +258,11 @@ fn between(report: &Report, blocks: &mut Vec<Block>) {
     }
     said.push(report.multiplicity.sentence.clone());
     blocks.push(Block::List(said));
+    if let Some(ladder) = &report.ladder {
+        blocks.push(Block::Heading(2, "The ladder of qualities".to_owned()));
+        blocks.push(Block::Text(ladder.sentence.clone()));
+        blocks.extend(plot::ladder(ladder, 1.0 - report.alpha).map(|figure| Block::Figures(vec![figure])));
+    }
 }
 
 fn people(report: &Report, blocks: &mut Vec<Block>) {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::arm::ArmReport;
 use super::between::{ContrastReport, Multiplicity};
+use super::ladder::Ladder;
 use super::{Flow, LISTED, Options, Report, words};
 use crate::exclude::{Conduct, Excluded, Reason, Times, judge};
 use crate::plan::Rules;
@@ -78,6 +79,7 @@ impl Gather {
             alpha,
             contrasts: ContrastReport::all(&kept, alpha),
             multiplicity: Multiplicity::new(&kept, alpha),
+            ladder: options.pictures.as_ref().and_then(|(pictures, _)| Ladder::new(&kept, pictures, alpha)),
             deviations: words::deviations(plan, &provenance, &people, options.pictures.as_ref().map(|(_, hash)| *hash)),
             flow: Flow {
                 sessions: self.sessions,

@@ -6,8 +6,10 @@ mod csv_table;
 mod document;
 mod gather;
 mod html;
+pub mod ladder;
 mod markdown;
 pub mod numbers;
+pub mod planning;
 pub mod plot;
 pub mod words;
 
@@ -27,6 +29,7 @@ use crate::trial_log::Error;
 use arm::ArmReport;
 use between::{ContrastReport, Multiplicity};
 use gather::Gather;
+use ladder::Ladder;
 
 /// Exclusions that are listed one by one; beyond, they are only counted.
 pub const LISTED: usize = 10_000;
@@ -56,6 +59,8 @@ pub struct Report {
     pub contrasts: Vec<ContrastReport>,
     /// The primary tests, adjusted for being several.
     pub multiplicity: Multiplicity,
+    /// The arms as steps of a ladder, where at least three qualities have known costs.
+    pub ladder: Option<Ladder>,
     /// The arms with every answered critical trial.
     pub without_exclusions: Vec<ArmReport>,
     /// Sessions whose critical trial is left out, the first [`LISTED`] of them.

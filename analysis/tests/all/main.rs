@@ -2,6 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod bad_logs;
+mod false_alarms;
+// mod golden;
 mod logs;
 mod program;
 mod reports;
+mod schema;

@@ -81,3 +81,45 @@ fn what_the_machine_cannot_do_ends_with_one() {
     let output = run(folder.path(), &["log.csv", "-o", "no/such/folder/r.html"]);
     assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
 }
+
+#[test]
+fn a_folder_stands_for_its_logs() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(run(folder.path(), &["."]).status.code(), Some(2));
+    for id in 1..4 {
+        let below = folder.path().join(format!("p{id}"));
+        std::fs::create_dir(&below).unwrap();
+        write(&below, "log.csv", &[critical(id)]);
+        write(&below, "frames.csv", &[critical(id)]);
+        std::fs::write(below.join("log.json"), "{}").unwrap();
+    }
+    let output = run(folder.path(), &[".", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["provenance"]["logs"].as_array().unwrap().len(), 3);
+    assert_eq!(json["provenance"]["logs"][2]["file"], "./p3/log.csv");
+    assert_eq!(json["arms"][0]["n"], 3);
+}
+
+#[test]
+fn power_answers_in_words_and_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["power", "--n", "16"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let said = text(&output.stdout);
+    assert!(said.contains("plan 42 people in an arm") && said.contains("the power is 40.5 % to find"), "{said}");
+    let output = run(folder.path(), &["power", "--jod", "0.5", "--target", "0.9", "--json", "-o", "curve.csv"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["question"], "equivalence");
+    assert!((json["bound"].as_f64().unwrap() - 0.132).abs() < 1e-3);
+    assert!(std::fs::read_to_string(folder.path().join("curve.csv")).unwrap().starts_with("people,power\n"));
+    for (arguments, says) in [
+        (vec!["power", "--bound", "0.5"], "expected a number between 0 and 0.5"),
+        (vec!["power", "--truth", "nan"], "expected a number between 0 and 1"),
+        (vec!["power", "--n", "0"], "0 is not in"),
+        (vec!["power", "-o", "x.txt"], "expected an ending"),
+    ] {
+        let output = run(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(text(&output.stderr).contains(says), "{arguments:?}: {}", text(&output.stderr));
+    }
+}

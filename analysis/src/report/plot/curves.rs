@@ -1,7 +1,7 @@
 //! Curves: the posterior, and power.
 
 use super::Figure;
-use super::canvas::{Anchor, Canvas, Frame, NARROW};
+use super::canvas::{Anchor, Canvas, Frame, NARROW, WIDE};
 use crate::bayes::posterior_density;
 use crate::binomial;
 use crate::plan::Bound;
@@ -116,5 +116,24 @@ pub fn power_by_people(n: u64, needed: Option<u64>, alpha: f64) -> Figure {
             "Exact power is a saw-tooth: plan with the number from which it stays above the target (thin line, 90 %)."
                 .to_owned(),
         description: format!("Power with {n} people where the truth is 75 %: {}{needed}.", percent(power(n))),
+    }
+}
+
+/// A curve of exact power by number of people, with lines at the powers aimed at.
+#[must_use]
+pub fn power_curve(curve: &[(u64, f64)], targets: &[f64]) -> Figure {
+    let most = curve.last().map_or(1, |(n, _)| *n);
+    let mut canvas = Canvas::new(WIDE, 340.0);
+    let frame = Frame::draw(&mut canvas, [0.0, most as f64], [0.0, 1.0], ["people in an arm", "power"], [false, true]);
+    for target in targets {
+        canvas.line("target", frame.point(0.0, *target), frame.point(most as f64, *target));
+    }
+    let points: Vec<[f64; 2]> = curve.iter().map(|(n, power)| frame.point(*n as f64, *power)).collect();
+    canvas.path("curve", &points, false);
+    let ends = curve.last().map(|(n, power)| format!("{} at {n} people", percent(*power))).unwrap_or_default();
+    Figure {
+        svg: canvas.finish(),
+        caption: "Exact power is a saw-tooth: plan with the number from which it stays above the target.".to_owned(),
+        description: format!("Power by number of people in an arm, up to {ends}."),
     }
 }

@@ -4,11 +4,13 @@ mod canvas;
 mod curves;
 mod flow;
 mod intervals;
+mod ladder;
 mod timing;
 
-pub use curves::{posterior, power_by_people, power_by_truth};
+pub use curves::{posterior, power_by_people, power_by_truth, power_curve};
 pub use flow::flow;
 pub use intervals::{Row, intervals};
+pub use ladder::ladder;
 pub use timing::timing;
 
 /// A drawing with the words that stand for it where it cannot be seen.

@@ -5,7 +5,9 @@
 
 mod arm;
 mod between;
+mod ladder;
 mod plan;
+pub mod planning;
 mod verdict;
 
 pub use arm::{
@@ -13,6 +15,7 @@ pub use arm::{
     usual_bounds,
 };
 pub use between::{contrast, multiplicity};
+pub use ladder::ladder;
 pub use plan::{deviations, kept};
 pub use verdict::{Finding, Verdict, verdict};
 
