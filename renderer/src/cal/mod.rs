@@ -14,6 +14,7 @@ mod library;
 mod node;
 mod noise;
 mod parse;
+mod shipped;
 mod symbols;
 
 #[cfg(test)]
@@ -24,3 +25,4 @@ pub use evaluate::{EvaluationError, Evaluator, Nowhere, Surroundings};
 pub use functions::{Expression, Functions, Lambda};
 pub use library::Dialect;
 pub use parse::BadExpression;
+pub use shipped::shipped;

@@ -283,33 +283,40 @@ proptest! {
     }
 }
 
-/// A hit on the plane z = 0 from straight above, as `data/make.py` traces it.
-struct FromAbove {
-    x: f64,
-    y: f64,
+/// A hit on the plane z = 0 from a distance of 2, as `data/make.py` traces it.
+struct Hit {
+    direction: [f64; 3],
+    place: [f64; 2],
+    reals: Vec<f64>,
 }
 
-impl Surroundings for FromAbove {
+impl Surroundings for Hit {
     fn channel(&self, n: u32) -> Option<f64> {
         Some(match n {
-            3 => -1.0,
-            7 => self.x,
-            8 => self.y,
-            10 => 2.0,
-            // Nz, Rdot, S, Ix, Jy, Kz.
-            6 | 11 | 12 | 16 | 20 | 24 => 1.0,
+            1..=3 => self.direction[n as usize - 1],
+            7 | 8 => self.place[n as usize - 7],
+            10 | 25 => 2.0,
+            11 => self.direction[2].abs(),
+            6 => -self.direction[2].signum(),
+            // S, Ix, Jy, Kz.
+            12 | 16 | 20 | 24 => 1.0,
             1..=24 => 0.0,
             _ => return None,
         })
     }
 
     fn count(&self) -> usize {
-        2
+        self.reals.len()
     }
 
     fn argument(&self, n: usize) -> Option<f64> {
-        Somewhere.argument(n)
+        self.reals.get(n.checked_sub(1)?).copied()
     }
+}
+
+fn numbers<const N: usize>(text: &str) -> [f64; N] {
+    let numbers: Vec<f64> = text.split(' ').map(|number| number.parse().unwrap()).collect();
+    numbers.try_into().unwrap()
 }
 
 #[test]
@@ -321,13 +328,32 @@ fn values_are_those_of_the_real_evaluators() {
         let printed: f64 = printed.parse().unwrap();
         let mut functions = ray();
         let expression = functions.expression(".", text).unwrap();
-        let (at, digits) = match place.split_once(' ') {
-            Some((x, y)) => (FromAbove { x: x.parse().unwrap(), y: y.parse().unwrap() }, 2e-5),
-            None => (FromAbove { x: 0.0, y: 0.0 }, 2e-9),
-        };
+        let (place, digits) = if place == "-" { ([0.0; 2], 2e-9) } else { (numbers(place), 2e-5) };
+        let at = Hit { direction: [0.0, 0.0, -1.0], place, reals: vec![0.5, 0.25] };
         let found = Evaluator::new(&functions).value(expression, &at).unwrap();
         assert!((found - printed).abs() <= digits * (printed.abs() + 1.0), "{line}: found {found}");
         tried += 1;
     }
     assert_eq!(tried, 163);
+}
+
+#[test]
+fn shipped_files_give_the_values_of_their_namesakes() {
+    let mut tried = 0;
+    for line in include_str!("data/files.txt").lines().filter(|line| !line.starts_with('#')) {
+        let fields: Vec<&str> = line.split(';').collect();
+        let [file, text, reals, direction, place, printed] = fields[..] else { panic!("{line}") };
+        let printed: f64 = printed.parse().unwrap();
+        let mut functions = ray();
+        functions.define_file(file, super::shipped(file).unwrap()).unwrap();
+        let expression = functions.expression(file, text).unwrap();
+        assert_eq!(functions.check(expression), None, "{line}");
+        let reals = reals.split(' ').map(|number| number.parse().unwrap()).collect();
+        let at = Hit { direction: numbers(direction), place: numbers(place), reals };
+        let found = Evaluator::new(&functions).value(expression, &at).unwrap();
+        // Colours were printed with 4 added, to 7 digits.
+        assert!((found - printed).abs() <= 2e-5 * (printed.abs() + 1.0), "{line}: found {found}");
+        tried += 1;
+    }
+    assert_eq!(tried, 600);
 }

@@ -146,6 +146,10 @@ impl Document {
 /// An error at a place in one of `sources`.
 pub(super) fn error_at(sources: &[SourceFile], span: Span, message: impl Into<String>) -> Error {
     let Some(source) = sources.get(span.source as usize) else { return Error::of_file("", message) };
+    // A compiled file has no text to show.
+    if source.text.is_empty() {
+        return Error::of_file(&source.name, message);
+    }
     let mut error = Error::in_text(&source.name, &source.text, span.start as usize, span.end as usize, message);
     let mut reader = source.read_by;
     // A file is read by files that were read before it, so this ends.

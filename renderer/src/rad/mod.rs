@@ -5,6 +5,7 @@
 //! manual ("Scene Description") and the manual pages named where they apply.
 
 mod arguments;
+mod binary;
 mod command;
 mod document;
 mod expand;
@@ -12,11 +13,14 @@ mod files;
 mod generate;
 mod kind;
 mod lexer;
+mod mesh;
 mod number;
+mod octree;
 mod options;
 mod parse;
 mod place;
 mod resolve;
+mod rif;
 mod spelling;
 mod statement;
 mod transform;
@@ -31,7 +35,10 @@ pub use crate::diagnostic::{Error, MAX_ERRORS};
 pub use document::{Argument, Document, Primitive, SourceFile, Span};
 pub use files::{DiskFiles, Files, Found, MemoryFiles};
 pub use kind::{Class, Kind};
+pub use mesh::{Mesh, MeshTriangle, MeshVertex, read_mesh};
+pub use octree::read_octree;
 pub use options::{Commands, Limits, Options};
+pub use rif::{Rif, RifView};
 pub use spelling::nearest;
 pub use transform::{BadTransform, Transform};
 pub use view::{ViewKind, ViewSpec};

@@ -62,11 +62,41 @@ Ix+Jy+Kz+Tx+S/10
 noise3d(2, Px, Py, .3)
 DEGREE*100""".splitlines()
 
+# (file, real arguments, expressions): seen by slanting rays too.
+FILES = [
+    ("rev.cal", ".5 .25 -2 3", ["rev_dx", "rev_dy", "rev_dz"]),
+    ("surf.cal", "2 .1 .2 .3 .4 .5 .6 .7 .8 .9 1 1.1 1.2", ["surf_dx", "surf_dy", "surf_dz"]),
+    ("surf.cal", "0 .1 .2 .3 .4 .5 .6 .7 .8 .9 1 1.1 1.2", ["surf_dx/3", "surf_dz"]),
+    ("tmesh.cal", "1 .1 .2 .3 .4 .5 .6 .7 .8 .9", ["dx", "dy", "dz", "u", "v"]),
+    ("skybright.cal", "1 1.5 .5 .3 .6 0 .8", ["skybr"]),
+    ("skybright.cal", "2 1.5 .5", ["skybr"]),
+    ("skybright.cal", "3 1.5 .5", ["skybr"]),
+    ("skybright.cal", "4 1.5 .5 .3 .6 0 .8", ["skybr"]),
+    ("source.cal", "1.5 1 2 .5", ["src_theta/100", "src_phi/100", "src_phi2/100", "src_phi4/100", "flatcorr(.5)"]),
+    ("source.cal", "1.5 1 2 .5", ["boxcorr(.5)", "cylcorr(.5)", "srcB_vert/100", "srcB_horiz2/100"]),
+    ("illum.cal", "1 0 0 0 .6 .8 0 -.8 .6", ["il_alt", "il_azi", "il_alth", "il_azih"]),
+]
+
+DIRECTIONS = [(0, 0, -1), (0.6, 0, -0.8), (-0.48, 0.6, -0.64), (0.48, 0.6, 0.64)]
+
 POINTS = [(0.1, 0.2), (1.37, -2.6), (-0.73, 0.55), (-3.9, 4.4), (7.25, 0.05)]
 
 
 def run(command, text, folder):
     return subprocess.run(command, input=text, cwd=folder, capture_output=True, check=True, text=True).stdout
+
+
+def trace(pattern, rays, folder, from_below=False):
+    scene = f"void brightfunc f {pattern}\nf glow g 0 0 4 1 1 1 0\n"
+    corners = ["-20 -20 0", "20 -20 0", "20 20 0", "-20 20 0"]
+    scene += f"g polygon p 0 0 12 {' '.join(corners[::-1] if from_below else corners)}\n"
+    with open(os.path.join(folder, "a.rad"), "w") as file:
+        file.write(scene)
+    octree = subprocess.run(["oconv", "a.rad"], cwd=folder, capture_output=True, check=True).stdout
+    with open(os.path.join(folder, "a.oct"), "wb") as file:
+        file.write(octree)
+    lines = run(["rtrace", "-h", "-ab", "0", "-ov", "a.oct"], rays, folder).splitlines()
+    return [float(line.split()[1]) - 4 for line in lines]
 
 
 def main():
@@ -78,17 +108,21 @@ def main():
         for expression in PLAIN:
             out.write(f"{expression};-;{run(['ev', expression], '', folder).strip()}\n")
         for expression in HIT:
-            scene = f'void brightfunc f 2 "4+({expression})" . 0 2 .5 .25\nf glow g 0 0 4 1 1 1 0\n'
-            scene += "g polygon p 0 0 12 -20 -20 0 20 -20 0 20 20 0 -20 20 0\n"
-            with open(os.path.join(folder, "a.rad"), "w") as file:
-                file.write(scene)
-            octree = subprocess.run(["oconv", "a.rad"], cwd=folder, capture_output=True, check=True).stdout
-            with open(os.path.join(folder, "a.oct"), "wb") as file:
-                file.write(octree)
             rays = "".join(f"{x} {y} 2 0 0 -1\n" for x, y in POINTS)
-            lines = run(["rtrace", "-h", "-ab", "0", "-ov", "a.oct"], rays, folder).splitlines()
-            for (x, y), line in zip(POINTS, lines):
-                out.write(f"{expression};{x} {y};{float(line.split()[1]) - 4:.7g}\n")
+            found = trace(f'2 "4+({expression})" . 0 2 .5 .25', rays, folder)
+            for (x, y), value in zip(POINTS, found):
+                out.write(f"{expression};{x} {y};{value:.7g}\n")
+    with open(os.path.join(here, "files.txt"), "w") as out, tempfile.TemporaryDirectory() as folder:
+        out.write("# Written by make.py; do not edit. File; expression; real arguments; direction; x y of the hit; value.\n")
+        for name, reals, expressions in FILES:
+            for expression in expressions:
+                for direction in DIRECTIONS:
+                    dx, dy, dz = direction
+                    rays = "".join(f"{x - 2 * dx} {y - 2 * dy} {-2 * dz} {dx} {dy} {dz}\n" for x, y in POINTS)
+                    found = trace(f'2 "4+{expression}" {name} 0 {len(reals.split())} {reals}', rays, folder, dz > 0)
+                    for (x, y), value in zip(POINTS, found):
+                        out.write(f"{name};{expression};{reals};{dx} {dy} {dz};{x} {y};{value:.7g}\n")
+
 
 
 main()

@@ -52,10 +52,44 @@ xform -s 2 nested.rad
 xform -c -s 2 nested.rad
 cat nested.rad | xform -t 0 0 1
 xform -c -t 1 1 1 nested.rad | xform -a 2 -mx
+genrev m r 'sin(2*PI*t)' '2+cos(2*PI*t)' 12
+genrev m r 'sin(2*PI*t)' '2+cos(2*PI*t)' 12 -s
+genrev m r 'if(t-.5,1,2*t)' 'if(t-.5,2-2*t,1)' '2*4' -s
+genrev m r 'hermite(0,3,0,-5,t)' 'hermite(0,1.5,4,3,t)' 8
+genrev m r 'z(t)' 'bezier(1,2,0,1,t)' 6 -e 'z(t) = -3*t^2; unused = 1' -s
+genworm m w 'cos(t*PI/2)+4' 'sin(t*PI/2)+1' '0' .25 5
+genworm m w t 't*t' 'bspline(0,1,3,2,t)' '.1+.2*t' 7
+genworm m w 'f(t)' 0 0 1 3 -f funcs.txt
+gensurf m s '-87+200*s' '-91+200*t' '3*sin(9*s)*cos(7*t)' 4 5
+gensurf m s '5*s' '4*t' '0' 2 3
+gensurf m s 's' 't' 's*s+t*t' 3 3 -s
+gensurf m s 's' 't' '.3*s' 2 2 -s
+gensurf m s 'cos(PI*s)' 'sin(PI*s)' '2*t' 6 2 -s -i
+gensurf m s 's' 't' 's*t' 4 4 -e 'valid(s,t)=.9-s*t'
+gensurf m s '2*s' 't' heights.txt 2 3
+gensurf m s '2*s' 't' heights.txt 3 4 -s
+gensurf m s points.txt points.txt points.txt 1 2
+gensky 1 11 10 -a 52.53 -o 118.05 -m 105 -g .7
+gensky 12 3 13 -g .2
+gensky 7 12 19 -a 52.53 -o 118.05 -m 105 -g .2
+gensky 6 21 12:30EST -a 40 -o 75 +i
+gensky 6 21 +9:15 -a 40 -o 75 -i -t 4
+gensky 3 21 15 -a 40 -o 75 -m 75 -c
+gensky 3 21 15 -a 40 -o 75 -m 75 -u -B 100
+gensky 10 2 14.25CET -y 2004 -a 51.5 -o -2.6 +s -t 3
+gensky -ang 35 -40 -R 500 -b 20
+gensky -ang 89 10 -r 0
+gensky -ang -5 10
+genblinds m bl 1 48 18 6 0
+genblinds m bl 1 48 18 3 30 -r 2
+genblinds m bl .1 1 2 2 -45 +r .06
 """.splitlines()
 
 OUTSIDE = {
     "outline.txt": "0 0\n0 1.5\n2 1.5\n2.5 .5\n",
+    "funcs.txt": "f(t) = g(2*t); g(x) = x + 1;\n",
+    "heights.txt": "0 1 0\n.5 0 .25\n1 2 3\n-1 -2 .125\n",
+    "points.txt": "0 0 0  1 0 .5\n0 1 0  1 1 .25\n0 2 1  1 2 0\n",
     "args.txt": "# two places\n-t 1 0 0\n\n!xform -n z -rz 90 -s 2\n",
     "nested.rad": "void plastic m 0 0 5 1 1 1 0 0\nm sphere s 0 0 4 1 1 1 1\n"
     "!genbox m b 1 2 3 | \\\nxform -t 1 0 0\n!xform -n deep -rz 45 everything.rad\n",

@@ -11,6 +11,7 @@ use super::super::statement::Draft;
 use super::super::xform::BadWords;
 use super::Output;
 use super::arguments::Arguments;
+use super::smooth::over_triangle;
 
 /// Rounding by more segments would make millions of triangles a corner.
 const MAX_SEGMENTS: usize = 1024;
@@ -34,10 +35,15 @@ struct Cuboid<'a> {
     /// How far bevel or rounding reach inwards.
     inset: f64,
     invert: bool,
+    /// Whether the normals of flat segments are those of the rounding that they stand for.
+    smooth: bool,
     out: Output<'a>,
 }
 
-/// `genbox material name xsize ysize zsize [-i] [-b bevel | -r radius [-n segments]]`
+/// Function file of the interpolated normals.
+const NORMALS: &str = "tmesh.cal";
+
+/// `genbox material name xsize ysize zsize [-i] [-b bevel | -r radius [-n segments] [-s]]`
 pub(super) fn run(words: &[Word], span: Span) -> Result<Vec<Draft>, BadWords> {
     let mut arguments = Arguments::new(words);
     let modifier = arguments.word("the material")?;
@@ -47,7 +53,8 @@ pub(super) fn run(words: &[Word], span: Span) -> Result<Vec<Draft>, BadWords> {
         arguments.positive("the y size")?,
         arguments.positive("the z size")?,
     );
-    let mut cuboid = Cuboid { size, inset: 0.0, invert: false, out: Output::new(&modifier.text, &name.text, span) };
+    let out = Output::new(&modifier.text, &name.text, span);
+    let mut cuboid = Cuboid { size, inset: 0.0, invert: false, smooth: false, out };
     let (mut round, mut segments) = (false, 1);
     while let Some(option) = arguments.next() {
         match option.text.as_str() {
@@ -58,9 +65,9 @@ pub(super) fn run(words: &[Word], span: Span) -> Result<Vec<Draft>, BadWords> {
                 round = true;
             }
             "-n" => segments = arguments.count("the number of segments", 1, MAX_SEGMENTS)?,
-            "-s" => return Err(BadWords::at(Some(option), "`-s`: smoothed normals are not supported")),
+            "-s" => cuboid.smooth = true,
             "-o" => return Err(BadWords::at(Some(option), "`-o`: Wavefront text is no scene text")),
-            _ => return Err(arguments.unknown("-i, -b bevel, -r radius, -n segments")),
+            _ => return Err(arguments.unknown("-i, -b bevel, -r radius, -n segments, -s")),
         }
     }
     if cuboid.invert && segments == 1 {
@@ -111,6 +118,21 @@ impl Cuboid<'_> {
         self.out.polygon(suffix, &vertices);
     }
 
+    /// A triangle of a rounding about `centre`.
+    fn rounded(&mut self, suffix: &str, directions: [DVec3; 3], centres: [DVec3; 3], clockwise: bool) {
+        let points: [DVec3; 3] = std::array::from_fn(|corner| centres[corner] + self.inset * directions[corner]);
+        let normals = if self.invert { directions.map(|direction| -direction) } else { directions };
+        match over_triangle(points, normals).filter(|_| self.smooth) {
+            Some((axis, rows)) => {
+                let mut reals = vec![axis as f64];
+                reals.extend(rows.iter().flat_map(DVec3::to_array));
+                self.out.texture(["dx", "dy", "dz", NORMALS], reals);
+            }
+            None => self.out.plain(),
+        }
+        self.polygon(suffix, points.to_vec(), clockwise);
+    }
+
     fn flat(&mut self, vertices: &[(usize, usize)], clockwise: bool) {
         let suffix: String = vertices.iter().map(|&(corner, inset)| letter(corner, inset)).collect();
         let points = vertices.iter().map(|&(corner, inset)| self.vertex(corner, inset)).collect();
@@ -151,18 +173,25 @@ impl Cuboid<'_> {
             }
             Edges::Segmented(segments) => {
                 let (from, to) = (self.vertex(near, all), self.vertex(far, all));
-                let out = outward(near) * self.inset;
-                let offset = |step: usize| {
+                let out = outward(near);
+                let direction = |step: usize| {
                     let (sin, cos) = quarter(step, segments);
-                    let mut offset = DVec3::ZERO;
-                    offset[u] = cos * out[u];
-                    offset[v] = sin * out[v];
-                    offset
+                    let mut direction = DVec3::ZERO;
+                    direction[u] = cos * out[u];
+                    direction[v] = sin * out[v];
+                    direction
                 };
                 for step in 0..segments {
-                    let (here, there) = (offset(step), offset(step + 1));
+                    let (here, there) = (direction(step), direction(step + 1));
                     let suffix = format!("e{}{}.{step}", letter(near, all), letter(far, all));
-                    self.polygon(&suffix, vec![from + here, from + there, to + there, to + here], clockwise);
+                    if self.smooth {
+                        self.rounded(&format!("{suffix}a"), [here, there, there], [from, from, to], clockwise);
+                        self.rounded(&format!("{suffix}b"), [there, here, here], [to, to, from], clockwise);
+                    } else {
+                        let corners = [(from, here), (from, there), (to, there), (to, here)];
+                        let points = corners.map(|(centre, direction)| centre + self.inset * direction).to_vec();
+                        self.polygon(&suffix, points, clockwise);
+                    }
                 }
             }
         }
@@ -187,8 +216,7 @@ impl Cuboid<'_> {
                 }
                 for (index, triangle) in triangles.into_iter().enumerate() {
                     let suffix = format!("c{}.{index}", letter(corner, all));
-                    let points = triangle.map(|direction| centre + self.inset * direction).to_vec();
-                    self.polygon(&suffix, points, clockwise);
+                    self.rounded(&suffix, triangle, [centre; 3], clockwise);
                 }
             }
         }
@@ -208,4 +236,41 @@ fn quarter(step: usize, steps: usize) -> (f64, f64) {
 fn quartered([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
     let (ab, bc, ca) = ((a + b).normalize(), (b + c).normalize(), (c + a).normalize());
     [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{Kind, MemoryFiles, Options, Source, read};
+    use super::*;
+
+    #[test]
+    fn smoothed_roundings_have_the_normals_of_cylinders_and_spheres() {
+        for (options, sign) in [("", 1.0), ("-i", -1.0)] {
+            let text = format!("void plastic m 0 0 5 1 1 1 0 0\n!genbox m b 1 2 3 -r .25 -n 4 -s {options}\n");
+            let document = read(&[Source::new("t", text)], &MemoryFiles::new(), &Options::default()).unwrap();
+            let mut smoothed = 0;
+            for polygon in document.primitives.iter().filter(|primitive| primitive.kind == Kind::Polygon) {
+                let texture = &document.primitives[polygon.modifier.unwrap()];
+                if texture.kind != Kind::Texfunc {
+                    assert_eq!(polygon.reals.len(), 12);
+                    continue;
+                }
+                let points: Vec<DVec3> = polygon.reals.as_chunks::<3>().0.iter().map(|&p| DVec3::from(p)).collect();
+                let axis = texture.reals[0] as usize;
+                let facing = (points[1] - points[0]).cross(points[2] - points[0]).normalize();
+                for point in points {
+                    let place = DVec3::new(point[(axis + 1) % 3], point[(axis + 2) % 3], 1.0);
+                    let found =
+                        DVec3::from_array([1, 4, 7].map(|at| DVec3::from_slice(&texture.reals[at..]).dot(place)));
+                    let core = point.clamp(DVec3::splat(0.25), DVec3::new(1.0, 2.0, 3.0) - 0.25);
+                    let wanted = sign * (point - core) / 0.25;
+                    assert!((found - wanted).length() < 1e-12, "{found} is not {wanted} at {point}");
+                    assert!(found.dot(facing) > 0.8);
+                }
+                smoothed += 1;
+            }
+            // Twelve edges of four squares, eight corners of sixteen triangles.
+            assert_eq!(smoothed, 12 * 4 * 2 + 8 * 16);
+        }
+    }
 }

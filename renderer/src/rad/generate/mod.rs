@@ -2,8 +2,17 @@
 //! full precision.
 
 mod arguments;
+mod curves;
+mod genblinds;
 mod genbox;
 mod genprism;
+mod genrev;
+mod gensky;
+mod gensurf;
+mod genworm;
+mod height_data;
+mod smooth;
+mod sun;
 
 use glam::DVec3;
 
@@ -14,7 +23,7 @@ use super::statement::Draft;
 use super::xform::BadWords;
 
 /// The generators' names.
-pub(super) const NAMES: [&str; 2] = ["genbox", "genprism"];
+pub(super) const NAMES: [&str; 7] = ["genbox", "genprism", "genrev", "gensurf", "genworm", "gensky", "genblinds"];
 
 /// Runs the generator `program`; `span` is the command, `read` gives the text of a file that the words name.
 pub(super) fn run(
@@ -26,9 +35,17 @@ pub(super) fn run(
     match program {
         "genbox" => genbox::run(words, span),
         "genprism" => genprism::run(words, span, read),
+        "genrev" => genrev::run(words, span, read),
+        "gensurf" => gensurf::run(words, span, read),
+        "genworm" => genworm::run(words, span, read),
+        "gensky" => gensky::run(words, span),
+        "genblinds" => genblinds::run(words, span),
         _ => Err(BadWords::at(None, "is no generator")),
     }
 }
+
+/// The name of the textures that bend normals.
+const SMOOTHING: &str = "Phong";
 
 /// Collects what a generator makes.
 struct Output<'a> {
@@ -36,24 +53,43 @@ struct Output<'a> {
     name: &'a str,
     span: Span,
     made: Vec<Draft>,
+    /// Whether the next surface has the last texture as its modifier.
+    textured: bool,
 }
 
 impl<'a> Output<'a> {
     fn new(modifier: &'a str, name: &'a str, span: Span) -> Self {
-        Self { modifier, name, span, made: Vec::new() }
+        Self { modifier, name, span, made: Vec::new(), textured: false }
     }
 
-    /// Adds a surface named `name.suffix`.
-    fn surface(&mut self, kind: Kind, suffix: &str, reals: Vec<f64>) {
+    /// Adds a primitive.
+    fn named(&mut self, modifier: &str, kind: Kind, name: &str, strings: &[&str], reals: Vec<f64>) {
         self.made.push(Draft {
-            modifier: self.modifier.to_owned(),
+            modifier: modifier.to_owned(),
             kind,
-            name: format!("{}.{suffix}", self.name),
-            strings: Vec::new(),
+            name: name.to_owned(),
+            strings: strings.iter().map(|&text| text.to_owned()).collect(),
             reals,
             span: self.span,
             as_written: false,
         });
+    }
+
+    /// Adds a surface named `name.suffix`.
+    fn surface(&mut self, kind: Kind, suffix: &str, reals: Vec<f64>) {
+        let modifier = if self.textured { SMOOTHING } else { self.modifier };
+        self.named(modifier, kind, &format!("{}.{suffix}", self.name), &[], reals);
+    }
+
+    /// Adds a texture: three functions and their file. The surfaces that follow have it.
+    fn texture(&mut self, strings: [&str; 4], reals: Vec<f64>) {
+        self.named(self.modifier, Kind::Texfunc, SMOOTHING, &strings, reals);
+        self.textured = true;
+    }
+
+    /// The surfaces that follow have no texture.
+    fn plain(&mut self) {
+        self.textured = false;
     }
 
     fn polygon(&mut self, suffix: &str, vertices: &[DVec3]) {

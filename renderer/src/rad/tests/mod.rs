@@ -1,6 +1,7 @@
 //! The reader as a whole, on texts of its own.
 
 mod commands;
+mod compiled;
 mod properties;
 mod real_programs;
 
