@@ -300,7 +300,7 @@ impl Surroundings for Hit {
             6 => -self.direction[2].signum(),
             // S, Ix, Jy, Kz.
             12 | 16 | 20 | 24 => 1.0,
-            1..=24 => 0.0,
+            4..=24 => 0.0,
             _ => return None,
         })
     }
