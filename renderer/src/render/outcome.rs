@@ -1,0 +1,82 @@
+//! What was rendered, and how the work of parcels and tiles adds up.
+
+use crate::component::PerComponent;
+use crate::crex::Span;
+use crate::film::Film;
+use crate::schedule::{StageRow, merge_rows};
+use crate::transport::Parcel;
+use crate::work::{Stage, WorkReport};
+
+/// What a rendering made.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The picture in its layers.
+    pub film: Film,
+    /// What the primary rays did.
+    pub primary: WorkReport,
+    /// What every stage did over the whole picture, in the order in which they ran. Seconds are summed over threads.
+    pub stages: Vec<StageRow>,
+    /// Rays that were spawned and not traced.
+    pub left: PerComponent<u64>,
+    /// Where the `*`s stand that were stopped before their rays ran out; each deserves a warning.
+    pub stopped: Vec<Span>,
+}
+
+/// A state of the picture between two stages.
+#[derive(Clone, Copy, Debug)]
+pub struct Snapshot<'a> {
+    /// The stage that has just ended; `None` after the primary rays.
+    pub stage: Option<&'a Stage>,
+    /// What it did.
+    pub report: &'a WorkReport,
+    /// The picture so far.
+    pub film: &'a Film,
+}
+
+/// What a parcel, a tile or a picture did.
+#[derive(Default)]
+pub(super) struct Outcome {
+    pub(super) primary: WorkReport,
+    pub(super) rows: Vec<StageRow>,
+    pub(super) left: PerComponent<u64>,
+    pub(super) stopped: Vec<Span>,
+}
+
+impl Outcome {
+    pub(super) fn add(&mut self, other: Self) {
+        add_report(&mut self.primary, &other.primary);
+        add_counts(&mut self.left, &other.left);
+        self.rows = merge_rows([std::mem::take(&mut self.rows), other.rows]);
+        for span in other.stopped {
+            if !self.stopped.contains(&span) {
+                self.stopped.push(span);
+            }
+        }
+    }
+}
+
+pub(super) fn add_counts(sum: &mut PerComponent<u64>, counts: &PerComponent<u64>) {
+    for (component, sum) in sum.iter_mut() {
+        *sum += counts[component];
+    }
+}
+
+pub(super) fn add_report(sum: &mut WorkReport, report: &WorkReport) {
+    sum.rays += report.rays;
+    sum.seconds += report.seconds;
+    add_counts(&mut sum.spawned, &report.spawned);
+}
+
+pub(super) fn occupancy(parcels: &[Parcel]) -> PerComponent<u64> {
+    let mut sum = PerComponent::default();
+    parcels.iter().for_each(|parcel| add_counts(&mut sum, &parcel.occupancy()));
+    sum
+}
+
+pub(super) fn finish(mut film: Film, outcome: Outcome) -> Rendering {
+    let Outcome { primary, rows: stages, left, mut stopped } = outcome;
+    let reached = stages.iter().filter(|row| row.report.rays > 0).map(|row| row.stage.component).collect();
+    film.keep(reached);
+    stopped.sort_by_key(|span| (span.start, span.end));
+    Rendering { film, primary, stages, left, stopped }
+}
