@@ -5,6 +5,7 @@ pub mod color;
 pub mod component;
 pub mod crex;
 pub mod diagnostic;
+pub mod features;
 pub mod film;
 pub mod geometry;
 pub mod importance;

@@ -22,7 +22,7 @@ const RENDERER_ARROWS: &[(&str, &[&str])] = &[
     ("geometry", &["math"]),
     ("scene", &["rad", "material", "geometry", "color", "component", "math", "pattern", "sample"]),
     ("film", &["component", "raster", "color"]),
-    ("features", &["raster", "color"]),
+    ("features", &["raster", "geometry"]),
     (
         "transport",
         &[

@@ -7,6 +7,7 @@
 mod bins;
 mod dimension;
 mod direct;
+mod first_hits;
 mod parcel;
 mod ray;
 mod spawn;

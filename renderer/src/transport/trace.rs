@@ -42,6 +42,15 @@ enum Seen<'a> {
     Material(&'a Material),
 }
 
+impl<'a> Tracer<'a> {
+    /// A tracer with the default settings: all that the low-level pass needs.
+    #[must_use]
+    pub fn new(scene: &'a Scene, aggregate: &'a Aggregate) -> Self {
+        let (ambient, layers) = (Rgb::ZERO, Layers::Last);
+        Self { scene, aggregate, limits: Limits::default(), ambient, lights_visible: true, layers, seed: 0 }
+    }
+}
+
 impl Tracer<'_> {
     /// Traces a ray: adds what it brings to the planes, and puts what it spawns into the bins.
     pub(super) fn trace(&self, ray: &PathRay, sampler: &Sampler, scratch: &mut Scratch, spawner: &mut Spawner<'_>) {
@@ -100,7 +109,7 @@ impl Tracer<'_> {
     }
 
     /// Follows a ray through surfaces that are not there for it. `None` if nothing comes from where it ends.
-    fn meet(&self, from: &PathRay) -> Option<Meeting<'_>> {
+    pub(super) fn meet(&self, from: &PathRay) -> Option<Meeting<'_>> {
         let mut ray = from.ray;
         let mut length = 0.0;
         // A straight line meets no shape more than twice.
@@ -177,11 +186,11 @@ impl Tracer<'_> {
 }
 
 /// Where a ray ends.
-struct Meeting<'a> {
+pub(super) struct Meeting<'a> {
     /// The surface and what it is to this ray; `None`: nothing was met.
-    hit: Option<(Hit, &'a Material)>,
+    pub(super) hit: Option<(Hit, &'a Material)>,
     /// The last piece of the ray.
-    ray: Ray,
+    pub(super) ray: Ray,
     /// Length of all pieces.
-    length: f64,
+    pub(super) length: f64,
 }

@@ -4,6 +4,7 @@
 
 mod closed_forms;
 mod execution;
+mod first_hits;
 mod furnace;
 mod recursive;
 
