@@ -133,6 +133,7 @@ fn wrong_words_are_exit_2_and_a_missing_folder_exit_1() {
         (&["room.rad", "--crex", "D", "-o", "a.exr", "--spp", "0"], 2, "--spp"),
         (&["room.rad", "--crex", "T{RS}", "-o", "a.exr", "--thresholds", ".5"], 2, "threshold"),
         (&["room.rad", "--crex", "D", "-o", "a.exr", "--importance", "none.png"], 2, "none.png"),
+        (&["room.rad", "--crex", "{D}", "-o", "a.exr", "--continuous"], 2, "--importance"),
     ] {
         let output = folder.render(words);
         assert_eq!(output.status.code(), Some(code), "{words:?}: {}", said(&output));

@@ -11,6 +11,7 @@ use crate::geometry::Aggregate;
 use crate::raster::Raster;
 use crate::scene::{Scene, View};
 use crate::schedule::{Clock, Scheduler};
+use crate::transport::Rule;
 
 pub use outcome::{Rendering, Snapshot};
 pub use settings::{RenderError, Settings};
@@ -25,6 +26,7 @@ pub struct Renderer<'a> {
     settings: Settings,
     importance: Option<&'a Raster<f32>>,
     thresholds: Option<&'a [f32]>,
+    rule: Rule,
     progress: Option<&'a (dyn Fn(f64) + Sync)>,
 }
 
@@ -43,7 +45,8 @@ impl<'a> Renderer<'a> {
     ) -> Result<Self, RenderError> {
         settings::check(&settings)?;
         let (importance, thresholds, progress) = (None, None, None);
-        Ok(Self { scene, aggregate, view, program, clock, settings, importance, thresholds, progress })
+        let rule = Rule::Thresholds;
+        Ok(Self { scene, aggregate, view, program, clock, settings, importance, thresholds, rule, progress })
     }
 
     /// Modulates `{ }` by a map of values in [0, 1], of the picture's size.
@@ -69,6 +72,14 @@ impl<'a> Renderer<'a> {
     pub fn with_thresholds(self, thresholds: &'a [f32]) -> Result<Self, RenderError> {
         Scheduler::new(self.program, Some(thresholds))?;
         Ok(Self { thresholds: Some(thresholds), ..self })
+    }
+
+    /// Has the map say how many samples of a pixel run the members of `{ }`, instead of which members run: all of them,
+    /// wherever it is above 0, with the expected picture kept ([`Rule::Continuous`]). Thresholds then decide nothing.
+    #[must_use]
+    pub fn with_continuous_importance(self) -> Self {
+        let samples = self.settings.samples;
+        Self { rule: Rule::Continuous { samples }, ..self }
     }
 
     /// Has `progress` called with the fraction of the work that is done, from any thread.

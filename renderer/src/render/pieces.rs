@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::color::Rgb;
 use crate::component::{Component, ComponentSet};
 use crate::film::{Block, Film};
-use crate::transport::{Parcel, Samples, Tracer};
+use crate::transport::{Modulation, Parcel, Samples, Tracer};
 use crate::work::WorkReport;
 
 use super::Renderer;
@@ -33,6 +33,7 @@ impl<'a> Renderer<'a> {
             lights_visible: self.settings.lights_visible,
             layers: self.settings.layers,
             seed: self.settings.seed,
+            modulation: self.importance.map(|map| Modulation { map, rule: self.rule }),
         }
     }
 

@@ -35,9 +35,8 @@ impl Renderer<'_> {
             match work {
                 Work::Release => parcels.par_iter_mut().for_each(Parcel::release),
                 Work::Run(stage) => {
-                    let report = self.all_parcels(&mut parcels, |parcel, workspace| {
-                        parcel.run(&tracer, &stage, self.importance, workspace)
-                    });
+                    let report =
+                        self.all_parcels(&mut parcels, |parcel, workspace| parcel.run(&tracer, &stage, workspace));
                     scheduler.report(&report);
                     self.develop(&parcels, &mut film);
                     show(Snapshot { stage: Some(&stage), report: &report, film: &film });

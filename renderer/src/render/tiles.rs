@@ -63,7 +63,7 @@ impl Renderer<'_> {
             match work {
                 Work::Release => parcel.release(),
                 Work::Run(stage) => {
-                    let report = self.timed(|| parcel.run(tracer, &stage, self.importance, workspace));
+                    let report = self.timed(|| parcel.run(tracer, &stage, workspace));
                     scheduler.report(&report);
                 }
             }

@@ -9,5 +9,8 @@ pub(super) const DIRECTION: u32 = 1;
 /// Russian roulette for the lobe of each step of a path (`PathKey::then`).
 pub(super) const ROULETTE: u32 = 32;
 
+/// Which way the number of samples is rounded that run the members of `{ }`.
+pub(super) const IMPORTANCE: u32 = 48;
+
 /// The point on light number i, the i-th from here.
 pub(super) const LIGHT: u32 = 64;

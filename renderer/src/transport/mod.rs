@@ -8,12 +8,14 @@ mod bins;
 mod dimension;
 mod direct;
 mod first_hits;
+mod modulation;
 mod parcel;
 mod ray;
 mod spawn;
 mod trace;
 
 pub use bins::{RayBins, SpawnRecord};
+pub use modulation::{Choice, Modulation, Rule};
 pub use parcel::{Parcel, Samples, Workspace};
 pub use ray::{PathRay, RayPath, transmittance};
 pub use spawn::Limits;

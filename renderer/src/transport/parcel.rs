@@ -6,7 +6,6 @@ use crate::color::Rgb;
 use crate::component::{Component, ComponentSet, PerComponent};
 use crate::film::{Block, Plane, Planes};
 use crate::geometry::Ray;
-use crate::raster::Raster;
 use crate::sample::{PathKey, Sampler};
 use crate::scene::View;
 use crate::work::{BinOccupancy, Stage, WorkReport};
@@ -14,6 +13,7 @@ use crate::work::{BinOccupancy, Stage, WorkReport};
 use super::bins::RayBins;
 use super::dimension;
 use super::direct::Scratch;
+use super::modulation::{Choice, Rule};
 use super::ray::{PathRay, RayPath};
 use super::spawn::Spawner;
 use super::trace::Tracer;
@@ -64,7 +64,7 @@ impl Parcel {
         self.planes.clear(block.pixels(), stored, ambient);
     }
 
-    /// Traces the primary rays.
+    /// Traces the primary rays, and chooses those whose paths will run the members of `{ }` if importance is continuous.
     pub fn trace_primary(
         &mut self,
         tracer: &Tracer<'_>,
@@ -75,6 +75,7 @@ impl Parcel {
         let mut spawner = spawner(tracer, &mut self.bins, &mut self.planes, false);
         for pixel in 0..self.block.pixels() {
             let (x, y) = place(&self.block, pixel);
+            let share = tracer.modulation.and_then(|modulation| modulation.share(x, y, name(x, y), tracer.seed));
             for sample in self.numbers.clone() {
                 let sampler = Sampler::new(tracer.seed, name(x, y), PathKey::EYE, sample);
                 let [across, down] = sampler.pair(dimension::PIXEL).map(|u| 0.5 + samples.jitter * (u - 0.5));
@@ -83,36 +84,45 @@ impl Parcel {
                     .ray((x as f64 + across) / samples.width as f64, (y as f64 + down) / samples.height as f64);
                 let Some(ray) = ray else { continue };
                 rays += 1;
-                let ray = PathRay { ray, ripple: Rgb::ONE, path: RayPath::primary(pixel as u32, sample) };
+                let mut path = RayPath::primary(pixel as u32, sample);
+                if share.is_some_and(|share| sample >= share.chosen) {
+                    path.choice = Choice::PassedOver;
+                }
+                let ray = PathRay { ray, ripple: Rgb::ONE, path };
                 tracer.trace(&ray, &sampler, &mut workspace.scratch, &mut spawner);
             }
         }
         WorkReport { rays, spawned: spawner.spawned, seconds: 0.0 }
     }
 
-    /// Traces the visible rays of a component's bin: all, or if the stage has a threshold those of pixels whose
-    /// `importance` (a map of the whole picture; everywhere 1 if there is none) reaches it. The others stay visible.
-    pub fn run(
-        &mut self,
-        tracer: &Tracer<'_>,
-        stage: &Stage,
-        importance: Option<&Raster<f32>>,
-        workspace: &mut Workspace,
-    ) -> WorkReport {
+    /// Traces the visible rays of a component's bin: all, or if the stage has a threshold those that the tracer's
+    /// modulation admits (without one every pixel counts as 1). The others stay visible; only rays that continuous
+    /// importance has passed over are dropped, since others of their pixel stand for them.
+    pub fn run(&mut self, tracer: &Tracer<'_>, stage: &Stage, workspace: &mut Workspace) -> WorkReport {
         let mut records = self.bins.take(stage.component);
         let mut rays = 0;
         let mut spawned = PerComponent::default();
         let glossy = tracer.limits.glossy_sampling();
-        for record in records.drain(..) {
+        for mut record in records.drain(..) {
             let (x, y) = place(&self.block, record.path.pixel as usize);
-            let reached = match (stage.threshold, importance) {
-                (Some(threshold), Some(map)) => *map.at(x, y) >= threshold,
-                // Without a map every pixel counts as 1, and no threshold exceeds that.
-                _ => true,
-            };
-            if !reached {
-                self.bins.push(stage.component, record, false);
-                continue;
+            // Without a map every pixel counts as 1, and no threshold exceeds that.
+            if let (Some(threshold), Some(modulation)) = (stage.threshold, tracer.modulation) {
+                let reached = match modulation.rule {
+                    Rule::Thresholds => *modulation.map.at(x, y) >= threshold,
+                    Rule::Continuous { .. } => *modulation.map.at(x, y) > 0.0,
+                };
+                if !reached {
+                    self.bins.push(stage.component, record, false);
+                    continue;
+                }
+                match (modulation.share(x, y, name(x, y), tracer.seed), record.path.choice) {
+                    (Some(_), Choice::PassedOver) => continue,
+                    (Some(share), Choice::Chosen) => {
+                        record.ripple *= share.weight;
+                        record.path.choice = Choice::Weighted;
+                    }
+                    _ => {}
+                }
             }
             let mut spawner = Spawner { spawned, ..spawner(tracer, &mut self.bins, &mut self.planes, stage.held) };
             for i in 0..record.count {

@@ -8,6 +8,8 @@ use crate::film::{Layers, Plane};
 use crate::geometry;
 use crate::sample::PathKey;
 
+use super::modulation::Choice;
+
 /// What a ray remembers of its path from the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayPath {
@@ -30,6 +32,8 @@ pub struct RayPath {
     /// Whether a diffuse or glossy event is among its ancestors: then it does not see the light sources, whose light
     /// was already taken into account where the event happened.
     pub blind: bool,
+    /// Whether it runs the members of `{ }` where importance is continuous.
+    pub choice: Choice,
     /// Length of the way since the last such event, up to the ray's origin.
     pub blind_distance: f32,
     /// Extinction, per unit of length, of what the ray travels through.
@@ -50,6 +54,7 @@ impl RayPath {
             diffuse: 0,
             weight: 1.0,
             blind: false,
+            choice: Choice::Chosen,
             blind_distance: 0.0,
             extinction: Vec3::ZERO,
         }

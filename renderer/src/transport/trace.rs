@@ -8,6 +8,7 @@ use crate::sample::Sampler;
 use crate::scene::Scene;
 
 use super::direct::{Lit, Scratch};
+use super::modulation::Modulation;
 use super::ray::{PathRay, transmittance};
 use super::spawn::{Departure, Limits, Spawner};
 
@@ -30,6 +31,8 @@ pub struct Tracer<'a> {
     pub layers: Layers,
     /// Seed of all random numbers.
     pub seed: u64,
+    /// The importance of pixels, which `{ }` heeds; `None` is 1 everywhere.
+    pub modulation: Option<Modulation<'a>>,
 }
 
 /// What a ray sees in a surface.
@@ -47,7 +50,8 @@ impl<'a> Tracer<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, aggregate: &'a Aggregate) -> Self {
         let (ambient, layers) = (Rgb::ZERO, Layers::Last);
-        Self { scene, aggregate, limits: Limits::default(), ambient, lights_visible: true, layers, seed: 0 }
+        let (limits, modulation) = (Limits::default(), None);
+        Self { scene, aggregate, limits, ambient, lights_visible: true, layers, seed: 0, modulation }
     }
 }
 

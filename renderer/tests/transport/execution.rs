@@ -34,11 +34,11 @@ sheet polygon s 0 0 12 .2 .2 .8 1 .2 .8 1 .2 1.6 .2 .2 1.6
 pane polygon p 0 0 12 -.9 0 .1 0 0 .1 0 0 1.5 -.9 0 1.5
 ";
 
-fn room() -> Stage {
+pub(crate) fn room() -> Stage {
     Stage::new(ROOM, [0.0, -1.9, 1.3], [0.0, 1.0, -0.15], 75.0)
 }
 
-fn settings(samples: u32) -> Settings {
+pub(crate) fn settings(samples: u32) -> Settings {
     let mut settings = Settings::new(40, 40);
     settings.samples = samples;
     settings.threads = Some(1);
@@ -46,7 +46,7 @@ fn settings(samples: u32) -> Settings {
 }
 
 /// What two renderings must share to be the same: pictures, rays, what is left; not seconds.
-fn assert_same(a: &Rendering, b: &Rendering) {
+pub(crate) fn assert_same(a: &Rendering, b: &Rendering) {
     assert_eq!(a.film, b.film);
     assert_eq!((a.primary.rays, a.primary.spawned, a.left), (b.primary.rays, b.primary.spawned, b.left));
     let rows = |rendering: &Rendering| -> Vec<_> {
@@ -153,16 +153,26 @@ fn every_ray_is_traced_or_left() {
 }
 
 /// Mean over a picture of the sum of its channels, and what its seeds say of its error.
-fn mean_and_error(room: &Stage, crex: &str, seeds: u64, change: impl Fn(&mut Settings)) -> (f64, f64) {
-    let means: Vec<f64> = (0..seeds)
-        .map(|seed| {
-            let mut settings = settings(2);
-            settings.seed = seed;
-            change(&mut settings);
-            let picture = beauty(&room.render(crex, settings));
-            picture.values().iter().map(|pixel| pixel.element_sum()).sum::<f64>() / picture.values().len() as f64
-        })
-        .collect();
+fn mean_and_error_by(room: &Stage, crex: &str, seeds: u64, change: impl Fn(&mut Settings)) -> (f64, f64) {
+    mean_and_error_of(seeds, |seed| {
+        let mut settings = settings(2);
+        settings.seed = seed;
+        change(&mut settings);
+        room.render(crex, settings)
+    })
+}
+
+/// The same for the renderings of any kind, by seed.
+pub(crate) fn mean_and_error_of(seeds: u64, render: impl Fn(u64) -> Rendering) -> (f64, f64) {
+    mean_and_error(seeds, |seed| {
+        let picture = beauty(&render(seed));
+        picture.values().iter().map(|pixel| pixel.element_sum()).sum::<f64>() / picture.values().len() as f64
+    })
+}
+
+/// Mean of a number over seeds, and its standard error.
+pub(crate) fn mean_and_error(seeds: u64, number: impl Fn(u64) -> f64) -> (f64, f64) {
+    let means: Vec<f64> = (0..seeds).map(number).collect();
     let n = seeds as f64;
     let mean = means.iter().sum::<f64>() / n;
     let variance = means.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
@@ -171,7 +181,7 @@ fn mean_and_error(room: &Stage, crex: &str, seeds: u64, change: impl Fn(&mut Set
 
 /// Two estimates with 24 seeds each; 5 standard errors: a false alarm in some 1e5 comparisons (Student, 23 degrees of
 /// freedom). Seeds are fixed.
-fn assert_unbiased(a: (f64, f64), b: (f64, f64)) {
+pub(crate) fn assert_unbiased(a: (f64, f64), b: (f64, f64)) {
     let error = (a.1 * a.1 + b.1 * b.1).sqrt();
     assert!((a.0 - b.0).abs() < 5.0 * error, "{a:?} {b:?}");
     assert!(error < 0.02 * a.0, "the comparison says little: {a:?} {b:?}");
@@ -180,8 +190,8 @@ fn assert_unbiased(a: (f64, f64), b: (f64, f64)) {
 #[test]
 fn splitting_changes_noise_and_not_light() {
     let room = room();
-    let plain = mean_and_error(&room, "GD2", 24, |_| {});
-    let split = mean_and_error(&room, "GD2", 24, |settings| {
+    let plain = mean_and_error_by(&room, "GD2", 24, |_| {});
+    let split = mean_and_error_by(&room, "GD2", 24, |settings| {
         settings.samples = 1;
         settings.limits.diffuse_rays = 4;
     });
@@ -199,19 +209,19 @@ fn splitting_changes_noise_and_not_light() {
 #[test]
 fn roulette_is_unbiased() {
     let room = room();
-    let long = mean_and_error(&room, "(TRSGMD)*", 24, |settings| {
+    let long = mean_and_error_by(&room, "(TRSGMD)*", 24, |settings| {
         settings.samples = 1;
         settings.limits.least_weight = 1e-4;
         settings.limits.reflections = 30;
     });
-    let roulette = mean_and_error(&room, "(TRSGMD)*", 24, |settings| {
+    let roulette = mean_and_error_by(&room, "(TRSGMD)*", 24, |settings| {
         settings.samples = 1;
         settings.limits.least_weight = 0.2;
         settings.limits.reflections = 0;
     });
     assert_unbiased(long, roulette);
     // With a positive `-lr` the same least weight ends the paths instead, and light is missing.
-    let cut = mean_and_error(&room, "(TRSGMD)*", 4, |settings| settings.limits.least_weight = 0.2);
+    let cut = mean_and_error_by(&room, "(TRSGMD)*", 4, |settings| settings.limits.least_weight = 0.2);
     assert!(cut.0 < long.0 - 5.0 * long.1);
 }
 

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot start has failed")]
 
 mod closed_forms;
+mod continuous;
 mod execution;
 mod first_hits;
 mod furnace;

@@ -53,6 +53,10 @@ pub(crate) struct Args {
     /// Importance that each member of each { } needs, from left to right, in place of i/(n+1)
     #[arg(long, value_name = "A,B,..", value_delimiter = ',')]
     thresholds: Option<Vec<f32>>,
+    /// Let the map say how many samples of a pixel run the members of { }, all of them wherever it is above 0 and with
+    /// the expected picture unchanged, instead of which members run
+    #[arg(long, requires = "importance", conflicts_with = "thresholds")]
+    continuous: bool,
     /// Also write a picture, coloured by which components were allowed to run where, with a legend
     #[arg(long, value_name = "PICTURE")]
     ran: Option<PathBuf>,
@@ -86,6 +90,7 @@ pub(crate) struct Request {
     pub(crate) settings: Settings,
     pub(crate) importance: Option<ImportanceMap>,
     pub(crate) thresholds: Option<Vec<f32>>,
+    pub(crate) continuous: bool,
     pub(crate) provenance: Provenance,
 }
 
@@ -162,6 +167,9 @@ impl Prepared {
         }
         if let Some(thresholds) = &self.request.thresholds {
             renderer = renderer.with_thresholds(thresholds).map_err(refused)?;
+        }
+        if self.request.continuous {
+            renderer = renderer.with_continuous_importance();
         }
         let rendering = match show {
             None => renderer.render(),
@@ -248,6 +256,9 @@ fn request(args: &Args, options: &RadianceOptions, program: Program, inputs: Vec
         let list: Vec<String> = thresholds.iter().map(f32::to_string).collect();
         words.push_str(&format!(" --thresholds {}", list.join(",")));
     }
+    if args.continuous {
+        words.push_str(" --continuous");
+    }
     if !options.spelled.is_empty() {
         words.push_str(&format!(" {}", options.spelled));
     }
@@ -259,7 +270,8 @@ fn request(args: &Args, options: &RadianceOptions, program: Program, inputs: Vec
         inputs,
         exposure: None,
     };
-    Ok(Request { program, view, settings, importance, thresholds: args.thresholds.clone(), provenance })
+    let (thresholds, continuous) = (args.thresholds.clone(), args.continuous);
+    Ok(Request { program, view, settings, importance, thresholds, continuous, provenance })
 }
 
 /// Reads an importance map and brings it to the picture's size, with a word on how.
@@ -289,7 +301,9 @@ fn importance(path: &Path, width: usize, height: usize) -> Result<(ImportanceMap
 fn write_ran(path: &Path, request: &Request, rendering: &Rendering) -> Result<(), Failure> {
     let Settings { width, height, .. } = request.settings;
     let rows = rendering.stages.iter().filter(|row| row.report.rays > 0);
-    let runs: Vec<ran::Run> = rows.map(|row| (row.stage.component, row.stage.threshold)).collect();
+    // Continuous importance lets members run wherever it is above 0.
+    let least = |threshold| if request.continuous { f32::from_bits(1) } else { threshold };
+    let runs: Vec<ran::Run> = rows.map(|row| (row.stage.component, row.stage.threshold.map(least))).collect();
     let sets = ran::components_run(width, height, request.importance.as_ref(), &runs);
     let shown = ran::picture(&sets);
     let pixels = shown.values().iter().map(|pixel| pixel.as_vec3().to_array()).collect();
