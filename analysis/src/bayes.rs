@@ -47,7 +47,15 @@ pub fn posterior_within(counts: Proportion, bound: f64) -> f64 {
     let (k, n) = counts.as_f64();
     let (a, b) = (k + 1.0, n - k + 1.0);
     let (low, high) = (0.5 - bound, 0.5 + bound);
-    1.0 - beta::ln_lower(a, b, low, high).exp() - beta::ln_upper(a, b, high, low).exp()
+    let mean = a / (a + b);
+    // The difference of the two tails on the side where both are small, so that a tiny mass keeps its digits.
+    if mean < low {
+        beta::ln_upper(a, b, low, high).exp() - beta::ln_upper(a, b, high, low).exp()
+    } else if mean > high {
+        beta::ln_lower(a, b, high, low).exp() - beta::ln_lower(a, b, low, high).exp()
+    } else {
+        1.0 - beta::ln_lower(a, b, low, high).exp() - beta::ln_upper(a, b, high, low).exp()
+    }
 }
 
 /// The posterior's density at `x` in (0, 1), after `counts` and under the uniform prior.

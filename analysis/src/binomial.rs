@@ -41,6 +41,26 @@ pub fn ln_exactly(k: u64, n: u64, p: f64) -> f64 {
     beta::ln_prefix(hits, misses, p, 1.0 - p) + (n as f64).ln() - hits.ln() - misses.ln()
 }
 
+/// `P(first <= X <= last)`.
+#[must_use]
+pub fn between(first: u64, last: u64, n: u64, p: f64) -> f64 {
+    let below = |k: u64| ln_at_most(k, n, p).exp();
+    let beyond = |k: u64| ln_at_least(k, n, p).exp();
+    let mean = n as f64 * p;
+    // The difference of the two tails on the side where both are small, so that a tiny probability keeps its digits.
+    if first > last {
+        0.0
+    } else if mean < first as f64 {
+        beyond(first) - beyond(last + 1)
+    } else if first == 0 {
+        below(last)
+    } else if mean > last as f64 {
+        below(last) - below(first - 1)
+    } else {
+        1.0 - below(first - 1) - beyond(last + 1)
+    }
+}
+
 /// The two-sided exact test of one half.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ExactBinomial {
@@ -129,6 +149,24 @@ mod tests {
             assert!((sum - 1.0).abs() < 1e-13);
         }
         assert_eq!(ln_exactly(0, 0, 0.5), 0.0);
+    }
+
+    #[test]
+    fn what_lies_between_adds_up_wherever_it_lies() {
+        let sum =
+            |first: u64, last: u64, n: u64, p: f64| -> f64 { (first..=last).map(|k| ln_exactly(k, n, p).exp()).sum() };
+        for (first, last, n, p) in [
+            (10, 30, 200, 0.9),
+            (150, 190, 200, 0.1),
+            (80, 120, 200, 0.5),
+            (0, 16, 16, 0.3),
+            (0, 2, 16, 0.9),
+            (7, 7, 9, 0.5),
+        ] {
+            let exact = sum(first, last, n, p);
+            assert!((between(first, last, n, p) / exact - 1.0).abs() < 1e-11, "{first} {last} {n} {p}");
+        }
+        assert_eq!(between(3, 2, 16, 0.5), 0.0);
     }
 
     proptest! {

@@ -59,10 +59,7 @@ pub fn passing(n: u64, bound: f64, alpha: f64) -> Option<(u64, u64)> {
 /// no outcome can pass.
 #[must_use]
 pub fn power(n: u64, truth: f64, bound: f64, alpha: f64) -> f64 {
-    let Some((first, last)) = passing(n, bound, alpha) else { return 0.0 };
-    let below = if first == 0 { 0.0 } else { binomial::ln_at_most(first - 1, n, truth).exp() };
-    let above = binomial::ln_at_least(last + 1, n, truth).exp();
-    (1.0 - below - above).max(0.0)
+    passing(n, bound, alpha).map_or(0.0, |(first, last)| binomial::between(first, last, n, truth).max(0.0))
 }
 
 #[cfg(test)]

@@ -26,6 +26,15 @@ impl Bound {
     }
 }
 
+/// The bound of a plan, and whether it is shown to be one that was fixed beforehand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedBound {
+    /// The bound.
+    pub bound: Bound,
+    /// True where every log recorded the plan's hash before its first trial.
+    pub recorded: bool,
+}
+
 /// Whose critical trial is left out. None of the rules sees the answer to "which was worse".
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rules {

@@ -4,8 +4,9 @@
 //! `lapse`. `x` is larger where noticing is easier. Parameters are those of Schuett and others (2016): `threshold`, where
 //! F is one half, and `width`, from F = .05 to F = .95.
 //!
-//! Every person gives one answer, so the counts of a level are binomial whatever differs between people: there is no
-//! over-dispersion to be estimated. What can fail is the curve, and the deviance shows that.
+//! Every person gives one answer at one level, so the counts of a level are binomial whatever differs between people.
+//! What can scatter more is the levels about the curve, by their pictures or because the curve has another shape: the
+//! dispersion says how much, and the deviance whether it is more than chance.
 
 use serde::Serialize;
 
@@ -88,13 +89,17 @@ pub struct Fit {
     pub bracketed: bool,
     /// Deviance of the curve against a share of its own for each level.
     pub deviance: f64,
-    /// The deviance's degrees of freedom: levels less three parameters; none where that is not positive.
+    /// The deviance's degrees of freedom: levels less the parameters that are free at the maximum; none where that is not
+    /// positive.
     pub df: Option<u32>,
+    /// Pearson's chi-square of the levels over the degrees of freedom: near 1 where the counts scatter about the curve as
+    /// binomial counts do, above it where they scatter more.
+    pub dispersion: Option<f64>,
     /// Tail probability of the deviance: small where the curve does not fit.
     pub p: Option<f64>,
 }
 
-const THRESHOLDS: usize = 121;
+const THRESHOLDS: usize = 241;
 const WIDTHS: usize = 41;
 const LAPSES: usize = 11;
 const MOST_LAPSE: f64 = 0.1;
@@ -102,83 +107,139 @@ const MOST_LAPSE: f64 = 0.1;
 /// Fits a ladder; none with fewer than three levels with people at different positions. `level` is the interval's.
 #[must_use]
 pub fn fit(levels: &[Level], family: Family, level: f64) -> Option<Fit> {
-    let shown = |fold: fn(f64, f64) -> f64, from: f64| {
-        levels.iter().filter(|level| level.counts.n > 0).map(|level| level.x).fold(from, fold)
-    };
-    let (low, high) = (shown(f64::min, f64::INFINITY), shown(f64::max, f64::NEG_INFINITY));
-    let span = high - low;
-    let mut positions: Vec<f64> = levels.iter().filter(|level| level.counts.n > 0).map(|level| level.x).collect();
-    positions.sort_by(f64::total_cmp);
-    positions.dedup();
-    if positions.len() < 3 || !span.is_finite() {
-        return None;
-    }
+    let (range, _) = Range::of(levels, family)?;
+    let (curve, deviance, df) = likeliest(levels, family)?;
+    let most = curve.ln_likelihood(levels);
     let share = |i: usize, of: usize| i as f64 / (of - 1) as f64;
-    let curve_at = |i: usize, j: usize, k: usize| Curve {
-        family,
-        threshold: low - 0.5 * span + 2.0 * span * share(i, THRESHOLDS),
-        width: span * 0.1 * 50.0_f64.powf(share(j, WIDTHS)),
-        lapse: MOST_LAPSE * share(k, LAPSES),
-    };
-    let mut best = (f64::NEG_INFINITY, curve_at(0, 0, 0));
-    let mut marginal = vec![Vec::new(); THRESHOLDS];
-    for (i, column) in marginal.iter_mut().enumerate() {
+    // The trapezoid rule: the ends of a range count half.
+    let weight = |i: usize, of: usize| if i == 0 || i == of - 1 { 0.5 } else { 1.0 };
+    let mass = |i: usize| -> f64 {
+        let mut sum = 0.0;
         for j in 0..WIDTHS {
             for k in 0..LAPSES {
-                let curve = curve_at(i, j, k);
-                let ln = curve.ln_likelihood(levels);
-                column.push(ln);
-                if ln > best.0 {
-                    best = (ln, curve);
-                }
+                let curve = range.curve([share(i, THRESHOLDS), share(j, WIDTHS), share(k, LAPSES)]);
+                sum += weight(j, WIDTHS) * weight(k, LAPSES) * (curve.ln_likelihood(levels) - most).exp();
             }
         }
-    }
-    let masses: Vec<f64> = marginal.iter().map(|column| column.iter().map(|ln| (ln - best.0).exp()).sum()).collect();
+        sum
+    };
+    let masses: Vec<f64> = (0..THRESHOLDS).map(mass).collect();
     let tail = (1.0 - level) / 2.0;
-    let at = |q: f64| curve_at(0, 0, 0).threshold + 2.0 * span * quantile(&masses, q);
-    let threshold_interval = [at(tail), at(1.0 - tail)];
-    let curve = climb(levels, best.1, span);
-    let saturated: f64 =
-        levels.iter().map(|level| ln_binomial(level.counts, level.counts.value().unwrap_or(0.5))).sum();
-    let deviance = (2.0 * (saturated - curve.ln_likelihood(levels))).max(0.0);
-    let df = u32::try_from(positions.len()).ok().and_then(|n| n.checked_sub(3)).filter(|df| *df > 0);
+    let threshold_interval = [tail, 1.0 - tail].map(|q| range.curve([quantile(&masses, q), 0.0, 0.0]).threshold);
+    let high = range.low + range.span;
+    let expected = |level: &Level| curve.at(level.x);
+    let pearson: f64 = levels
+        .iter()
+        .filter(|level| level.counts.n > 0)
+        .map(|level| {
+            let ((k, n), p) = (level.counts.as_f64(), expected(level));
+            (k - n * p).powi(2) / (n * p * (1.0 - p))
+        })
+        .sum();
+    let df = Some(df).filter(|df| *df > 0);
     Some(Fit {
         curve,
         threshold_interval,
-        bracketed: low < threshold_interval[0] && threshold_interval[1] < high,
+        bracketed: range.low < threshold_interval[0] && threshold_interval[1] < high,
         deviance,
         df,
+        dispersion: df.map(|df| pearson / f64::from(df)).filter(|dispersion| dispersion.is_finite()),
         p: df.map(|df| gamma::ln_upper(f64::from(df) / 2.0, deviance / 2.0).exp()),
     })
 }
 
-/// Improves a curve by steps along each parameter that halve when none helps.
-fn climb(levels: &[Level], start: Curve, span: f64) -> Curve {
-    let mut best = (start.ln_likelihood(levels), start);
-    let mut step = 0.5;
-    while step > 1e-7 {
-        let mut moved = false;
-        for direction in [-1.0, 1.0] {
-            let here = best.1;
-            let candidates = [
-                Curve { threshold: here.threshold + direction * step * 0.05 * span, ..here },
-                Curve { width: here.width * (direction * step * 0.2).exp(), ..here },
-                Curve { lapse: (here.lapse + direction * step * 0.02).clamp(0.0, MOST_LAPSE), ..here },
-            ];
-            for curve in candidates {
-                let ln = curve.ln_likelihood(levels);
-                if ln > best.0 {
-                    best = (ln, curve);
-                    moved = true;
+impl Range {
+    /// The range for levels, with the number of different positions; none with fewer than three.
+    fn of(levels: &[Level], family: Family) -> Option<(Self, u32)> {
+        let mut positions: Vec<f64> = levels.iter().filter(|level| level.counts.n > 0).map(|level| level.x).collect();
+        positions.sort_by(f64::total_cmp);
+        positions.dedup();
+        let (low, high) = (*positions.first()?, *positions.last()?);
+        let number = u32::try_from(positions.len()).ok()?;
+        (number >= 3 && (high - low).is_finite()).then_some((Self { family, low, span: high - low }, number))
+    }
+}
+
+/// What curves are considered: thresholds from half a span below the levels to half a span above, widths from a tenth of
+/// the span to five spans, lapses from 0 to a tenth.
+#[derive(Clone, Copy)]
+struct Range {
+    family: Family,
+    low: f64,
+    span: f64,
+}
+
+impl Range {
+    /// The curve at a place in the unit cube: threshold, logarithm of the width, lapse.
+    fn curve(&self, [threshold, width, lapse]: [f64; 3]) -> Curve {
+        Curve {
+            family: self.family,
+            threshold: self.low - 0.5 * self.span + 2.0 * self.span * threshold,
+            width: self.span * 0.1 * 50.0_f64.powf(width),
+            lapse: MOST_LAPSE * lapse,
+        }
+    }
+
+    /// The curve of largest likelihood: the best of a coarse grid, improved by Hooke and Jeeves' pattern search (1961)
+    /// inside the range.
+    ///
+    /// Beside the curve, how many of its parameters lie on a limit of the range and so are not free.
+    fn likeliest(&self, levels: &[Level]) -> (Curve, u32) {
+        let value = |place: [f64; 3]| self.curve(place).ln_likelihood(levels);
+        let mut base = (f64::NEG_INFINITY, [0.0; 3]);
+        for i in 0..=12 {
+            for j in 0..=6 {
+                for k in 0..=1 {
+                    let place = [f64::from(i) / 12.0, f64::from(j) / 6.0, f64::from(k) / 2.0];
+                    let found = value(place);
+                    if found > base.0 {
+                        base = (found, place);
+                    }
                 }
             }
         }
-        if !moved {
-            step *= 0.5;
+        let explore = |from: (f64, [f64; 3]), step: f64| {
+            let mut best = from;
+            for axis in 0..3 {
+                for direction in [step, -step] {
+                    let mut place = best.1;
+                    place[axis] = (place[axis] + direction).clamp(0.0, 1.0);
+                    let found = value(place);
+                    if found > best.0 {
+                        best = (found, place);
+                        break;
+                    }
+                }
+            }
+            best
+        };
+        let mut step = 0.05;
+        while step > 1e-9 {
+            let mut better = explore(base, step);
+            if better.0 <= base.0 {
+                step *= 0.5;
+            }
+            while better.0 > base.0 {
+                // On in the direction that has just helped.
+                let ahead = std::array::from_fn(|i| (2.0 * better.1[i] - base.1[i]).clamp(0.0, 1.0));
+                base = better;
+                better = explore((value(ahead), ahead), step);
+            }
         }
+        let on_a_limit = base.1.iter().filter(|part| **part < 1e-6 || **part > 1.0 - 1e-6).count();
+        (self.curve(base.1), on_a_limit as u32)
     }
-    best.1
+}
+
+/// The curve of largest likelihood with its deviance against a share of its own for each level, and the deviance's degrees
+/// of freedom, levels less free parameters: one that lies on a limit of its range fits nothing. None with fewer than three levels with people at different positions.
+#[must_use]
+pub fn likeliest(levels: &[Level], family: Family) -> Option<(Curve, f64, u32)> {
+    let (range, positions) = Range::of(levels, family)?;
+    let (curve, on_a_limit) = range.likeliest(levels);
+    let saturated: f64 =
+        levels.iter().map(|level| ln_binomial(level.counts, level.counts.value().unwrap_or(0.5))).sum();
+    Some((curve, (2.0 * (saturated - curve.ln_likelihood(levels))).max(0.0), positions - 3 + on_a_limit))
 }
 
 /// `ln(p^k q^(n-k))`, 0 to the power 0 being 1.
@@ -187,15 +248,15 @@ fn ln_binomial(counts: Proportion, p: f64) -> f64 {
     part(counts.k, p.ln()) + part(counts.n - counts.k, (-p).ln_1p())
 }
 
-/// Where the running sum of masses on an even grid over [0, 1] reaches `q`, between grid points in proportion.
+/// Where the integral of masses on an even grid over [0, 1] reaches `q`, by the trapezoid rule.
 fn quantile(masses: &[f64], q: f64) -> f64 {
-    let total: f64 = masses.iter().sum();
+    let pieces: Vec<f64> = masses.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+    let total: f64 = pieces.iter().sum();
     let mut sum = 0.0;
-    for (i, mass) in masses.iter().enumerate() {
-        let next = sum + mass / total;
-        if next >= q && *mass > 0.0 {
-            let inside = (q - sum) / (next - sum);
-            return ((i as f64 - 0.5 + inside) / (masses.len() - 1) as f64).clamp(0.0, 1.0);
+    for (i, piece) in pieces.iter().enumerate() {
+        let next = sum + piece / total;
+        if next >= q && *piece > 0.0 {
+            return (i as f64 + ((q - sum) / (next - sum)).clamp(0.0, 1.0)) / pieces.len() as f64;
         }
         sum = next;
     }

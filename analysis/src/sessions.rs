@@ -1,8 +1,8 @@
 //! Logs to sessions: one pass, one row in memory, and every row held against those before it.
 //!
-//! Beside the row at hand only 24 bytes a session are kept, to tell a session or a participant that comes twice.
+//! Beside the row at hand only some eighty bytes a session are kept, to tell a session or a participant that comes twice.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fs::File;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -53,8 +53,11 @@ struct Common {
 #[derive(Default)]
 struct Checks {
     common: Option<Common>,
-    sessions: HashMap<u128, String>,
-    participants: HashMap<u128, ()>,
+    /// The logs read so far, by name.
+    files: Vec<PathBuf>,
+    /// Where each session begins: the log, by its place in `files`, and the line.
+    sessions: HashMap<u128, (u32, u64)>,
+    participants: HashSet<u128>,
     /// Whether an arm has a right answer, and where that was seen.
     right_answer: HashMap<String, (bool, String)>,
     /// Which of two qualities is the lower, and where that was seen.
@@ -75,6 +78,7 @@ pub fn read(files: &[PathBuf], visitor: &mut impl Visitor) -> Result<Provenance,
         let opened = File::open(file).map_err(|source| Error::Io { file: file.clone(), source })?;
         let (source, digest) = HashingReader::new(opened);
         let mut reader = Reader::new(source, file)?;
+        checks.files.push(file.clone());
         let rows = read_log(&mut reader, &mut checks, visitor)?;
         let analysis_plan_hash = sidecar_plan_hash(file)?;
         logs.push(LogRecord { file: file.display().to_string(), sha256: digest.hex(), rows, analysis_plan_hash });
@@ -261,12 +265,14 @@ impl Checks {
 
     fn begin<R: std::io::Read>(&mut self, row: &Trial, reader: &Reader<R>) -> Result<Session, Error> {
         let place = reader.place("session_id");
-        let seen = self.sessions.insert(key(&row.session_id), here(reader));
-        if let Some(before) = seen {
+        let file = u32::try_from(self.files.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        if let Some((file, line)) = self.sessions.insert(key(&row.session_id), (file, place.line)) {
+            let file = self.files.get(file as usize).cloned().unwrap_or_default();
+            let before = Place { file, line, column: None };
             let message = format!("session `{}` is already in {before}: is a log given twice?", row.session_id);
             return Err(wrong(reader, "session_id", message));
         }
-        let repeated = self.participants.insert(key(&row.participant), ()).is_some();
+        let repeated = !self.participants.insert(key(&row.participant));
         Ok(Session {
             id: row.session_id.clone(),
             participant: row.participant.clone(),
@@ -310,7 +316,7 @@ fn sidecar_plan_hash(log: &Path) -> Result<Option<String>, Error> {
     let file = log.with_extension("json");
     let Ok(text) = std::fs::read_to_string(&file) else { return Ok(None) };
     serde_json::from_str::<Head>(&text).map(|head| head.analysis_plan_hash).map_err(|error| Error::Content {
-        place: Place { line: error.line() as u64, column: None, file },
+        place: Place { line: error.line() as u64, column: Some((error.column(), String::new())), file },
         message: format!("not the sidecar of a log: {error}"),
     })
 }

@@ -46,6 +46,8 @@ pub struct ArmTally {
     pub correct_by_layout: BTreeMap<String, Proportion>,
     /// The quality whose telling is right, by name.
     pub lower_quality: Option<String>,
+    /// The quality that it was shown beside.
+    pub reference: Option<String>,
     /// Right answers by stated confidence.
     pub confidence: BTreeMap<u8, Proportion>,
     /// Counting, by quality.
@@ -85,12 +87,14 @@ impl ArmTally {
             self.right_answer = true;
             self.correct.count(correct);
             let order = self.order.get_or_insert_default();
-            let (half, layout, quality) = match lower {
-                Interval::Second => (&mut order.lower_second, &trial.second_layout, &trial.second_quality),
-                Interval::First => (&mut order.lower_first, &trial.first_layout, &trial.first_quality),
+            let [former, latter] = [&trial.first_quality, &trial.second_quality];
+            let (half, layout, quality, reference) = match lower {
+                Interval::Second => (&mut order.lower_second, &trial.second_layout, latter, former),
+                Interval::First => (&mut order.lower_first, &trial.first_layout, former, latter),
             };
             if self.lower_quality.is_none() {
                 self.lower_quality = Some(quality.clone());
+                self.reference = Some(reference.clone());
             }
             half.count(second);
             self.correct_by_layout.entry(layout.clone()).or_default().count(correct);

@@ -14,7 +14,7 @@ use crate::effect::Effect;
 use crate::equivalence::Tost;
 use crate::interval::Intervals;
 use crate::order::{CorrectedTost, Order};
-use crate::plan::Bound;
+use crate::plan::{Bound, PlannedBound};
 use crate::power::{Question, Reach, sample_size};
 use crate::proportion::Proportion;
 use crate::tally::{ArmTally, OrderTable};
@@ -78,7 +78,9 @@ pub struct Equivalence {
     pub raw: Tost,
     /// The test on the order-corrected proportion; none where the answers by order are not known.
     pub corrected: Option<CorrectedTost>,
-    /// True only when both pass.
+    /// Whether the logs show that the bound was fixed before the first participant.
+    pub recorded: bool,
+    /// True only when both pass and the bound was fixed beforehand.
     pub claimed: bool,
 }
 
@@ -111,6 +113,8 @@ pub struct ArmReport {
     pub right_answer: bool,
     /// The quality whose telling is right; none where that is not known.
     pub lower_quality: Option<String>,
+    /// The quality that it was shown beside; none where that is not known.
+    pub reference: Option<String>,
     /// Participants.
     pub n: u64,
     /// Participants whose answer was right; none where no answer is.
@@ -192,10 +196,11 @@ impl OneSample {
 impl Equivalence {
     /// The tests of an arm at the planned bound; none without data or without a right answer.
     #[must_use]
-    pub fn new(tally: &ArmTally, bound: Bound, alpha: f64) -> Option<Self> {
+    pub fn new(tally: &ArmTally, PlannedBound { bound, recorded }: PlannedBound, alpha: f64) -> Option<Self> {
         let raw = Tost::new(tally.correct, bound.proportion, alpha).filter(|_| tally.right_answer)?;
         let corrected = tally.order.as_ref().and_then(|table| CorrectedTost::new(table, bound.proportion, alpha));
-        Some(Self { bound, raw, corrected, claimed: raw.passes && corrected.is_some_and(|test| test.passes) })
+        let claimed = recorded && raw.passes && corrected.is_some_and(|test| test.passes);
+        Some(Self { bound, raw, corrected, recorded, claimed })
     }
 }
 
@@ -224,10 +229,10 @@ impl ArmReport {
     /// The report of an arm at `alpha`, with the planned bound, if there is one. `published`: the counts came without
     /// the trials.
     #[must_use]
-    pub fn new(name: &str, tally: &ArmTally, alpha: f64, bound: Option<Bound>, published: bool) -> Self {
+    pub fn new(name: &str, tally: &ArmTally, alpha: f64, planned: Option<PlannedBound>, published: bool) -> Self {
         let right = tally.right_answer && tally.n > 0;
         let tests = if right { Tests::new(tally.correct, alpha) } else { Tests::default() };
-        let equivalence = bound.and_then(|bound| Equivalence::new(tally, bound, alpha));
+        let equivalence = planned.and_then(|planned| Equivalence::new(tally, planned, alpha));
         let usual = |bound: &f64| Tost::new(tally.correct, *bound, alpha);
         let layout_chosen = tally.layouts.iter().map(|([layout, other], counts)| LayoutChosen {
             layout: layout.clone(),
@@ -238,14 +243,15 @@ impl ArmReport {
             arm: name.to_owned(),
             right_answer: tally.right_answer,
             lower_quality: tally.lower_quality.clone(),
+            reference: tally.reference.clone(),
             n: tally.n,
             correct: tally.right_answer.then_some(tally.correct.k),
             proportion: if right { tally.correct.value() } else { None },
             verdict: words::verdict(tally, tests.intervals.as_ref(), equivalence.as_ref()),
             usual_bounds: if right { USUAL_BOUNDS.iter().filter_map(usual).collect() } else { Vec::new() },
-            posterior_within_bound: bound
+            posterior_within_bound: planned
                 .filter(|_| right)
-                .map(|bound| bayes::posterior_within(tally.correct, bound.proportion)),
+                .map(|planned| bayes::posterior_within(tally.correct, planned.bound.proportion)),
             reach: if right { Reach::new(tally.n, alpha) } else { None },
             needed: sample_size(Question::Superiority { truth: 0.75 }, 0.9, alpha)
                 .filter(|_| right)

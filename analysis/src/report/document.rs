@@ -4,6 +4,7 @@ use super::Report;
 use super::arm::{ArmReport, Tests};
 use super::numbers::{p_value, percent, short};
 use super::plot::{self, Figure, Row};
+use super::sources;
 use super::words::{self, Finding};
 use crate::pictures::Picture;
 
@@ -63,9 +64,10 @@ pub(super) fn of(report: &Report) -> Vec<Block> {
     shown(report, &mut blocks);
     plan(report, &mut blocks);
     blocks.push(Block::Heading(2, "How the numbers are made".to_owned()));
-    blocks.push(Block::Facts(methods(report)));
+    blocks.push(Block::Facts(sources::methods(report)));
     blocks.push(Block::Heading(2, "Provenance".to_owned()));
-    blocks.push(Block::Facts(provenance(report)));
+    blocks.extend(sources::logs(report).map(Block::Table));
+    blocks.push(Block::Facts(sources::provenance(report)));
     blocks
 }
 
@@ -166,17 +168,19 @@ fn range([low, high]: [f64; 2]) -> String {
     format!("[{low:.3}, {high:.3}]")
 }
 
+/// A number to three digits after the point; what everybody or nobody answered lies beyond any.
+fn number(value: f64) -> String {
+    if value.is_finite() {
+        format!("{value:.3}")
+    } else if value > 0.0 {
+        "beyond any".to_owned()
+    } else {
+        "below any".to_owned()
+    }
+}
+
 fn effects(arm: &ArmReport) -> Option<Vec<String>> {
     let (effect, bayes) = (arm.tests.effect?, arm.tests.bayes?);
-    let number = |value: f64| {
-        if value.is_finite() {
-            format!("{value:.3}")
-        } else if value > 0.0 {
-            "beyond any".to_owned()
-        } else {
-            "below any".to_owned()
-        }
-    };
     let [low, high] = effect.d_prime_interval.map(number);
     let factor = |factor: crate::bayes::BayesFactor| {
         if factor.log10_bf01.abs() > 6.0 { format!("10^{:.1}", factor.log10_bf01) } else { short(factor.bf01) }
@@ -261,6 +265,21 @@ fn between(report: &Report, blocks: &mut Vec<Block>) {
     if let Some(ladder) = &report.ladder {
         blocks.push(Block::Heading(2, "The ladder of qualities".to_owned()));
         blocks.push(Block::Text(ladder.sentence.clone()));
+        let rows = ladder.steps.iter().map(|step| {
+            let [low, high] = step.jod_interval.map(number);
+            vec![
+                step.quality.clone(),
+                short(step.seconds),
+                words::counted(step.counts),
+                number(step.jod),
+                format!("{low} to {high}"),
+            ]
+        });
+        blocks.push(Block::Table(Table {
+            caption: format!("How far each quality is seen below {} (Thurstone's Case V)", ladder.reference),
+            columns: vec!["quality", "seconds a picture", "right answers", "JOD", "JOD interval"],
+            rows: rows.collect(),
+        }));
         blocks.extend(plot::ladder(ladder, 1.0 - report.alpha).map(|figure| Block::Figures(vec![figure])));
     }
 }
@@ -360,7 +379,9 @@ fn timing_facts(timing: &crate::timing::Timing) -> Vec<(String, String)> {
         fact("pictures stood for", format!("{low:.4} to {high:.4} s ({} pictures)", timing.pictures));
     }
     if let Some(worst) = timing.worst_error_ms {
-        fact("farthest from the planned duration", format!("{} ms", short(worst)));
+        // Clocks tell microseconds.
+        let worst = if worst < 1e-3 { "under 0.001".to_owned() } else { short(worst) };
+        fact("farthest from the planned duration", format!("{worst} ms"));
     }
     fact(
         "pictures with a missed frame",
@@ -427,51 +448,4 @@ fn plan(report: &Report, blocks: &mut Vec<Block>) {
     } else {
         blocks.push(Block::List(report.deviations.clone()));
     }
-}
-
-/// What each number is, for a reader who wants to make it again.
-fn methods(report: &Report) -> Vec<(String, String)> {
-    let level = short(100.0 * (1.0 - report.alpha));
-    [
-        ("unit", "One participant is one count: the critical trial. Later trials are never pooled with it.".to_owned()),
-        ("chi-square", "Pearson's statistic of the two counts against equal shares, one degree of freedom, p by the survival function; no continuity correction, as in 2005.".to_owned()),
-        ("exact p", "Twice the smaller tail of the binomial distribution at one half. This test decides; chi-square stands beside it.".to_owned()),
-        ("intervals", format!("{level} %: Clopper-Pearson (exact, drawn), Wilson's score interval, and equal tails of the posterior under Jeffreys' prior.")),
-        ("effect sizes", "h = asin(2p - 1), w = |2p - 1|, g = p - 1/2, d\u{2032} = sqrt 2 z(p) with its value at the Clopper-Pearson limits, JOD = z(p) / z(3/4).".to_owned()),
-        ("lean and order", "With H and F the shares answering \"second\" where the lower quality came second and first: d\u{2032} = (z(H) - z(F)) / sqrt 2, c = -(z(H) + z(F)) / 2.".to_owned()),
-        ("equivalence", "Two one-sided exact binomial tests at the bound, and the same question for the order-corrected proportion \u{3a6}((z(H) - z(F)) / 2) by profile likelihood with the lean free. Only where both pass is it claimed.".to_owned()),
-        ("between arms", "Newcombe's hybrid score interval of the difference; Fisher's exact test; Barnard's with the pooled score statistic.".to_owned()),
-        ("Bayes factors", "Probability of the data at one half, divided by that under each of three priors of the proportion.".to_owned()),
-        ("power", "Exact, by summing the binomial distribution over the rejected counts.".to_owned()),
-    ]
-    .map(|(name, text)| (name.to_owned(), text))
-    .to_vec()
-}
-
-/// Names and values of what the numbers come from.
-fn provenance(report: &Report) -> Vec<(String, String)> {
-    let from = &report.provenance;
-    let mut rows = Vec::new();
-    for log in &from.logs {
-        rows.push((format!("log {} ({} rows), SHA-256", log.file, log.rows), log.sha256.clone()));
-    }
-    rows.extend(from.counts.iter().map(|counts| ("counts as typed".to_owned(), counts.clone())));
-    let hashes = [
-        ("allocation plan, SHA-256", &from.plan_hash),
-        ("stimuli manifest, SHA-256", &from.stimuli_hash),
-        ("analysis plan, SHA-256", &from.analysis_plan_hash),
-    ];
-    for (name, hash) in hashes {
-        if let Some(hash) = hash {
-            rows.push((name.to_owned(), hash.clone()));
-        }
-    }
-    if let Some([first, last]) = &from.started_utc {
-        rows.push(("first and last session".to_owned(), format!("{first}, {last}")));
-    }
-    if !from.session_versions.is_empty() {
-        rows.push(("session program".to_owned(), from.session_versions.join(", ")));
-    }
-    rows.push(("report program".to_owned(), from.report_version.clone()));
-    rows
 }

@@ -7,7 +7,7 @@ use super::between::{ContrastReport, Multiplicity};
 use super::ladder::Ladder;
 use super::{Flow, LISTED, Options, Report, words};
 use crate::exclude::{Conduct, Excluded, Reason, Times, judge};
-use crate::plan::Rules;
+use crate::plan::{PlannedBound, Rules};
 use crate::provenance::Provenance;
 use crate::sessions::{Session, Visitor};
 use crate::tally::Tally;
@@ -65,7 +65,10 @@ impl Gather {
         provenance.report_version = env!("CARGO_PKG_VERSION").to_owned();
         provenance.analysis_plan_hash = plan.map(|plan| plan.hash().to_string());
         let alpha = plan.map_or(0.05, |plan| plan.alpha);
-        let bound = plan.map(|plan| plan.bound);
+        let recorded = provenance.analysis_plan_hash.is_some()
+            && !provenance.logs.is_empty()
+            && provenance.logs.iter().all(|log| log.analysis_plan_hash == provenance.analysis_plan_hash);
+        let bound = plan.map(|plan| PlannedBound { bound: plan.bound, recorded });
         let published = provenance.logs.is_empty();
         let arms = |tally: &Tally| -> Vec<ArmReport> {
             tally.arms.iter().map(|(name, arm)| ArmReport::new(name, arm, alpha, bound, published)).collect()

@@ -11,6 +11,7 @@ mod markdown;
 pub mod numbers;
 pub mod planning;
 pub mod plot;
+mod sources;
 pub mod words;
 
 use std::path::PathBuf;

@@ -10,7 +10,7 @@ pub struct Place {
     pub file: PathBuf,
     /// Line in the file, from 1.
     pub line: u64,
-    /// Number and name of the column, from 1.
+    /// Number of the column, from 1, and its name, which is empty where it has none.
     pub column: Option<(usize, String)>,
 }
 
@@ -18,6 +18,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, line {}", self.file.display(), self.line)?;
         match &self.column {
+            Some((number, name)) if name.is_empty() => write!(f, ", column {number}"),
             Some((number, name)) => write!(f, ", column {number} ({name})"),
             None => Ok(()),
         }

@@ -94,11 +94,11 @@ impl<R: Read> Reader<R> {
         let mut header = ByteRecord::new();
         match self.records.read_byte_record(&mut header) {
             Ok(true) => {}
-            Ok(false) => return Err(self.content(None, "the log is empty: expected a header line".to_owned())),
+            Ok(false) => return Err(self.content(Some(0), "the log is empty: expected a header line".to_owned())),
             Err(error) => return Err(self.csv_error(error)),
         }
         if header.get(0).is_some_and(|field| field.starts_with(&[0xff, 0xfe]) || field.starts_with(&[0xfe, 0xff])) {
-            return Err(self.content(None, "this is UTF-16: save the log as UTF-8".to_owned()));
+            return Err(self.content(Some(0), "this is UTF-16: save the log as UTF-8".to_owned()));
         }
         let header = match StringRecord::from_byte_record(header) {
             Ok(header) => header,
@@ -113,7 +113,8 @@ impl<R: Read> Reader<R> {
             && only.contains(';')
         {
             let message = "fields are set apart by semicolons: expected commas; export the log again as plain CSV";
-            return Err(self.content(None, message.to_owned()));
+            self.headers.clear();
+            return Err(self.content(Some(0), message.to_owned()));
         }
         for (index, column) in COLUMNS.iter().enumerate() {
             let mut found = (0..self.headers.len()).filter(|&at| self.headers[at] == column.name);
@@ -123,10 +124,14 @@ impl<R: Read> Reader<R> {
             }
             if place.is_none() && index < REQUIRED {
                 let message = format!(
-                    "column `{}` ({}) is missing: a log has the {REQUIRED} columns from `study` to `started_utc`",
-                    column.name, column.meaning
+                    "the column is missing ({}): a log has the {REQUIRED} columns from `study` to `started_utc`",
+                    column.meaning
                 );
-                return Err(self.content(None, message));
+                let column = Some((index + 1, column.name.to_owned()));
+                return Err(Error::Content {
+                    place: Place { file: self.file.clone(), line: self.line, column },
+                    message,
+                });
             }
             self.places.push(place);
         }
@@ -152,9 +157,10 @@ impl<R: Read> Reader<R> {
                 self.content(Some(last), message)
             }
             ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                self.content(None, format!("{len} fields, expected {expected_len}: is a comma in a field unquoted?"))
+                let message = format!("{len} fields, expected {expected_len}: is a comma in a field unquoted?");
+                self.content(usize::try_from(expected_len).ok(), message)
             }
-            other => self.content(None, format!("not a CSV row: {other:?}")),
+            other => self.content(Some(0), format!("not a CSV row: {other:?}")),
         }
     }
 }

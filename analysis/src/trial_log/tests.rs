@@ -154,7 +154,9 @@ fn a_wrong_field_is_reported_with_line_and_column() {
 fn a_missing_or_doubled_column_is_named() {
     let error = read(header_line().replace("simulated,", "")).unwrap_err();
     assert!(
-        error.starts_with("log.csv, line 1: column `simulated` (true when a simulated observer answered) is missing"),
+        error.starts_with(
+            "log.csv, line 1, column 5 (simulated): the column is missing (true when a simulated observer answered)"
+        ),
         "{error}"
     );
     let error = read(header_line().replace("arm,", "study,")).unwrap_err();
@@ -177,7 +179,7 @@ fn half_a_row_says_where_it_ends() {
 fn wrong_encodings_are_named() {
     let text = header_line() + &row_line(&sample());
     let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect();
-    assert!(read(utf16).unwrap_err().contains("line 1: this is UTF-16: save the log as UTF-8"));
+    assert!(read(utf16).unwrap_err().contains("line 1, column 1: this is UTF-16: save the log as UTF-8"));
     let latin1: Vec<u8> = log_with("participant", "J\u{fc}rg").chars().map(|c| c as u8).collect();
     let error = read(latin1).unwrap_err();
     assert!(error.starts_with("log.csv, line 3, column 3 (participant): not UTF-8"), "{error}");

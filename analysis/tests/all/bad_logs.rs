@@ -113,7 +113,7 @@ fn a_broken_sidecar_is_reported_and_a_missing_log_is_input() {
     let log = write(folder.path(), "log.csv", &[critical(1)]);
     std::fs::write(folder.path().join("log.json"), "{\n oops").unwrap();
     let said = report::of_logs(&[log], &Options::default()).unwrap_err().to_string();
-    assert!(said.contains("log.json, line 2: not the sidecar of a log"), "{said}");
+    assert!(said.contains("log.json, line 2, column 2: not the sidecar of a log"), "{said}");
     let missing = report::of_logs(&[folder.path().join("none.csv")], &Options::default()).unwrap_err();
     assert!(missing.is_input() && missing.to_string().contains("none.csv"));
 }

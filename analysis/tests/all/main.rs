@@ -3,8 +3,11 @@
 
 mod bad_logs;
 mod false_alarms;
-// mod golden;
+mod golden;
 mod logs;
+mod paper;
 mod program;
+mod properties;
 mod reports;
 mod schema;
+mod sentences;

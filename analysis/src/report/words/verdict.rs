@@ -103,16 +103,21 @@ fn not_shown(equivalence: Option<&Equivalence>) -> String {
     let Some(equivalence) = equivalence else {
         return "No equivalence bound was planned, so equivalence cannot be claimed.".to_owned();
     };
+    let planned = if equivalence.recorded { "planned bound" } else { "bound" };
     let bound = bound_words(equivalence.bound);
     let raw = p_equals(equivalence.raw.p, equivalence.raw.log10_p);
     match (equivalence.raw.passes, equivalence.corrected) {
-        (false, _) => format!("Equivalence within the planned bound of {bound} is not shown either ({raw})."),
+        (false, _) => format!("Equivalence within the {planned} of {bound} is not shown either ({raw})."),
         (true, None) => format!(
-            "The equivalence test at the planned bound of {bound} passes on the raw proportion ({raw}), but the answers by \
+            "The equivalence test at the {planned} of {bound} passes on the raw proportion ({raw}), but the answers by \
              order are not known and a lean towards one interval can fake that: equivalence is not claimed."
         ),
+        (true, Some(test)) if test.passes => format!(
+            "Both equivalence tests at a bound of {bound} pass, but the logs do not show that this bound was fixed before \
+             the first participant: equivalence is not claimed."
+        ),
         (true, Some(test)) => format!(
-            "The equivalence test at the planned bound of {bound} passes on the raw proportion ({raw}), but not with a lean \
+            "The equivalence test at the {planned} of {bound} passes on the raw proportion ({raw}), but not with a lean \
              towards one interval allowed for ({}): equivalence is not claimed.",
             p_equals(test.p, test.p.log10())
         ),
@@ -122,13 +127,17 @@ fn not_shown(equivalence: Option<&Equivalence>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Bound;
+    use crate::plan::{Bound, PlannedBound};
     use crate::proportion::Proportion;
     use crate::tally::OrderTable;
 
     fn say(tally: &ArmTally, bound: Option<f64>) -> Verdict {
+        say_of(tally, bound, true)
+    }
+
+    fn say_of(tally: &ArmTally, bound: Option<f64>, recorded: bool) -> Verdict {
         let intervals = (tally.n > 0).then(|| Intervals::new(tally.correct, 0.95));
-        let bound = bound.map(|bound| Bound::from_proportion(bound).unwrap());
+        let bound = bound.map(|bound| PlannedBound { bound: Bound::from_proportion(bound).unwrap(), recorded });
         let equivalence = bound.and_then(|bound| Equivalence::new(tally, bound, 0.05));
         verdict(tally, intervals.as_ref(), equivalence.as_ref())
     }
@@ -191,6 +200,28 @@ mod tests {
              interval 42.9 % to 57.1 %; the exact equivalence test passes on the raw proportion (p = 2.60e-9) and with a \
              lean towards one interval allowed for (p = 1.76e-9)."
         );
+    }
+
+    /// A bound that is chosen after the answers were seen can always be wide enough.
+    #[test]
+    fn a_bound_that_was_not_fixed_beforehand_shows_nothing() {
+        let found = say_of(&ordered(50, 50, 100), Some(0.2), false);
+        assert_eq!(found.finding, Finding::Undecided);
+        assert!(
+            found.sentence.ends_with(
+                "Both equivalence tests at a bound of ±20 % (0.78 JOD) pass, but the logs do not show that this bound was \
+                 fixed before the first participant: equivalence is not claimed."
+            ),
+            "{}",
+            found.sentence
+        );
+        let found = say_of(&counts(9, 16), Some(0.2), false);
+        assert!(
+            found
+                .sentence
+                .ends_with("Equivalence within the bound of ±20 % (0.78 JOD) is not shown either (p = 0.1753).")
+        );
+        assert_eq!(say_of(&ordered(550, 550, 1000), Some(0.2), false).finding, Finding::Noticed);
     }
 
     #[test]
