@@ -32,10 +32,10 @@ fn mixed(seed: u64) -> u64 {
 fn trial(session: u64, at: u32) -> Trial {
     let phase = [Phase::Practice, Phase::Critical, Phase::Informed, Phase::Check][at as usize];
     let draw = mixed(4 * session + u64::from(at));
-    let lower = if session / 2 % 2 == 0 { Interval::Second } else { Interval::First };
+    let lower = if (session / 2).is_multiple_of(2) { Interval::Second } else { Interval::First };
     let told = phase == Phase::Check || draw & 1 == 0;
     let asked = phase != Phase::Practice;
-    let told_arm = session % 2 == 0;
+    let told_arm = session.is_multiple_of(2);
     let counted = |true_count: u32, by: u32| Some(true_count - (draw >> by & 1) as u32);
     let quality = |here: Interval| if asked && told_arm && here == lower { "CBQ" } else { "HQ" };
     Trial {
