@@ -7,7 +7,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use renderer::picture::{self, Provenance, grey};
+use renderer::picture::grey::{self, Bits};
+use renderer::picture::{self, Provenance};
 use renderer::raster::Raster;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -180,7 +181,7 @@ fn a_map_of_zeros_and_ones_splits_the_rays() {
     let map = |name: &str, left: f32, right: f32| {
         let values = (0..48 * 33).map(|index| if index % 48 < 24 { left } else { right }).collect();
         let map = Raster::from_values(48, 33, values).unwrap();
-        grey::write(&folder.path(name), &map, &Provenance::default()).unwrap();
+        grey::write(&folder.path(name), &map, Bits::Sixteen, &Provenance::default()).unwrap();
         let stats = folder.stats("T{RSGM}", &["--importance", name, "--spp", "4"]);
         let counts: Vec<u64> = rays(&stats).into_iter().map(|row| row.1).collect();
         // What was spawned and not traced is left.
@@ -317,7 +318,7 @@ fn what_ran_where_is_shown_with_a_legend() {
     let folder = Folder::new();
     let values = (0..48 * 33).map(|index| 1.0 - (index % 48) as f32 / 47.0).collect();
     let map = Raster::from_values(48, 33, values).unwrap();
-    grey::write(&folder.path("map.png"), &map, &Provenance::default()).unwrap();
+    grey::write(&folder.path("map.png"), &map, Bits::Sixteen, &Provenance::default()).unwrap();
     folder.stats("T{RSGM}", &["--importance", "map.png", "--ran", "ran.png"]);
     let ran = picture::read(&folder.path("ran.png")).unwrap().beauty;
     assert_eq!(ran.width(), 48);

@@ -5,7 +5,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use renderer::picture::{Provenance, grey};
+use renderer::picture::Provenance;
+use renderer::picture::grey::{self, Bits};
 use renderer::raster::Raster;
 use stimuli::{Manifest, Stimulus, Study};
 
@@ -48,13 +49,11 @@ fn tiny_study() -> tempfile::TempDir {
     );
     write("shell.rad", "!genbox grey room 4 20 4 -i | xform -t -1 -5 0\n!xform -t 0 9 0 pane.rad\n");
     write("pane.rad", "pane polygon pane 0 0 12 0 0 0  3 0 0  3 0 3  0 0 3\n");
+    // One item of each kind that the study counts, all at one place.
+    let kinds = ["extinguisher", "hose_reel", "blanket", "call_point", "exit_sign", "hydrant_sign", "detector", "sprinkler"];
+    let items: String = kinds.iter().map(|kind| format!("grey sphere {kind}.1.body 0 0 4 2.2 6 1 .2\n")).collect();
     for layout in ["layout_a.rad", "layout_b.rad", "practice_a.rad", "practice_b.rad"] {
-        write(layout, "lamp sphere lamp 0 0 4 1.3 5 2 .2\n");
-    }
-    std::fs::create_dir(folder.path().join("maps")).unwrap();
-    for map in ["maps/a.png", "maps/b.png"] {
-        let values = Raster::from_values(2, 1, vec![0.0, 1.0]).unwrap();
-        grey::write(&folder.path().join(map), &values, &Provenance::default()).unwrap();
+        write(layout, &format!("lamp sphere lamp 0 0 4 1.3 5 2 .2\n{items}"));
     }
     folder
 }
@@ -142,4 +141,43 @@ fn wrong_input_is_told_and_renders_nothing() {
     assert!(stderr(&output).contains("a_hq, a_cbq"), "{}", stderr(&output));
     assert_eq!(code(&crex_stimuli(&study.join("nowhere"), &[])), 2);
     assert!(!study.join("manifest.json").exists());
+}
+
+#[test]
+fn maps_are_made_before_the_pictures_that_they_modulate() {
+    let folder = tiny_study();
+    let study = folder.path();
+    let made = crex_stimuli(study, &["--only", "a_hq"]);
+    assert_eq!(code(&made), 0, "{}", stderr(&made));
+    assert!(!study.join("maps").exists(), "nothing that is not needed is made");
+    let made = crex_stimuli(study, &["--only", "a_cbq", "--only", "b_cbq"]);
+    assert_eq!(code(&made), 0, "{}", stderr(&made));
+    let map = grey::read(&study.join("maps/a.png")).unwrap();
+    assert_eq!((map.width(), map.height()), (20, 16));
+    let (low, high) = map.values().iter().fold((1.0_f32, 0.0_f32), |(l, h), &v| (l.min(v), h.max(v)));
+    assert!(high == 1.0 && low < 0.9, "1 at the items, less elsewhere: {low} to {high}");
+    let first = Manifest::load(study).unwrap();
+    let inputs: Vec<_> = first.maps[Path::new("maps/a.png")].inputs.keys().map(|path| path.to_str().unwrap()).collect();
+    assert_eq!(inputs, ["corridor.vf", "layout_a.rad", "materials.rad", "pane.rad", "shell.rad"]);
+
+    // Another plan makes other maps, and those stale what they modulate; a map that was painted over is made again.
+    let text = std::fs::read_to_string(study.join("study.toml")).unwrap();
+    std::fs::write(study.join("study.toml"), text.replace("falloff = \"mar\"", "falloff = \"cortical\"")).unwrap();
+    let check = crex_stimuli(study, &["--check", "--only", "a_cbq"]);
+    assert_eq!(code(&check), 1);
+    assert!(stdout(&check).contains("maps/a.png: stale: changed since are the plan of the map"), "{}", stdout(&check));
+    let made = crex_stimuli(study, &["--only", "a_cbq"]);
+    assert!(stderr(&made).contains("a_cbq, stale: changed since are maps/a.png"), "{}", stderr(&made));
+    let white = Raster::filled(20, 16, 1.0);
+    grey::write(&study.join("maps/a.png"), &white, Bits::Eight, &Provenance::default()).unwrap();
+    let check = crex_stimuli(study, &["--check", "--only", "a_cbq"]);
+    assert!(stdout(&check).contains("maps/a.png: altered"), "{}", stdout(&check));
+
+    // Without a plan the maps are taken as they are drawn.
+    let drawn = text.replace("[importance]\nfovea_deg = 2.0\nfalloff = \"mar\"\n", "");
+    assert_ne!(drawn, text);
+    std::fs::write(study.join("study.toml"), drawn).unwrap();
+    let made = crex_stimuli(study, &["--only", "a_cbq"]);
+    assert_eq!(code(&made), 0, "{}", stderr(&made));
+    assert!(grey::read(&study.join("maps/a.png")).unwrap().values().iter().all(|&value| value == 1.0));
 }

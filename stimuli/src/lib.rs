@@ -11,5 +11,5 @@ pub mod study;
 
 pub use error::{Error, Result};
 pub use hash::Sha256;
-pub use manifest::{Manifest, PictureRecord, PictureStatus, Timing};
-pub use study::{Layout, Quality, Request, Stimulus, Study};
+pub use manifest::{Manifest, MapRecord, PictureRecord, PictureStatus, Timing};
+pub use study::{Layout, MapRequest, Quality, Request, Stimulus, Study};

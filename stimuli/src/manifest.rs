@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Mistake, Result};
 use crate::hash::Sha256;
-use crate::study::{Request, Study};
+use crate::study::{MapRequest, Request, Study};
 
 /// The name of the manifest in a study's folder.
 pub const FILE_NAME: &str = "manifest.json";
@@ -19,6 +19,9 @@ pub struct Manifest {
     pub study: String,
     /// The pictures by id ([`crate::Stimulus::id`]).
     pub pictures: BTreeMap<String, PictureRecord>,
+    /// The importance maps that were made, by their files.
+    #[serde(default)]
+    pub maps: BTreeMap<PathBuf, MapRecord>,
     /// What making them took, by the same ids.
     #[serde(default)]
     pub timings: BTreeMap<String, Timing>,
@@ -44,6 +47,19 @@ pub struct PictureRecord {
     pub rays: BTreeMap<String, u64>,
     /// Mean luminance of the picture before the display transfer, cd/m2.
     pub mean_luminance_cd_m2: f64,
+    /// The renderer that made it: name and version.
+    pub version: String,
+}
+
+/// One importance map: how it was asked for, what was read, what came out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MapRecord {
+    /// The digest of its file.
+    pub sha256: Sha256,
+    /// What was asked for.
+    pub request: MapRequest,
+    /// Digests of all files that were read; relative to the study's folder.
+    pub inputs: BTreeMap<PathBuf, Sha256>,
     /// The renderer that made it: name and version.
     pub version: String,
 }
@@ -136,24 +152,52 @@ impl Manifest {
     /// If a file that is there cannot be read.
     pub fn status(&self, folder: &Path, id: &str, request: &Request, version: &str) -> Result<PictureStatus> {
         let Some(record) = self.pictures.get(id) else { return Ok(PictureStatus::Missing) };
-        let Some(picture) = digest_if_there(&folder.join(&record.file))? else { return Ok(PictureStatus::Missing) };
-        let mut changed = request_changes(&record.request, request);
-        if record.version != version {
-            changed.push(format!("version ({}, now {version})", record.version));
-        }
-        for (input, digest) in &record.inputs {
-            if digest_if_there(&folder.join(input))? != Some(*digest) {
-                changed.push(input.display().to_string());
-            }
-        }
-        Ok(if !changed.is_empty() {
-            PictureStatus::Stale(changed)
-        } else if picture != record.sha256 {
-            PictureStatus::Altered
-        } else {
-            PictureStatus::Fresh
-        })
+        let changed = request_changes(&record.request, request);
+        status(folder, &record.file, record.sha256, changed, (&record.version, version), &record.inputs)
     }
+
+    /// Whether the importance map in `file` is what `request` would make.
+    ///
+    /// # Errors
+    /// If a file that is there cannot be read.
+    pub fn map_status(
+        &self,
+        folder: &Path,
+        file: &Path,
+        request: &MapRequest,
+        version: &str,
+    ) -> Result<PictureStatus> {
+        let Some(record) = self.maps.get(file) else { return Ok(PictureStatus::Missing) };
+        let changed = if record.request == *request { Vec::new() } else { vec!["the plan of the map".to_owned()] };
+        status(folder, file, record.sha256, changed, (&record.version, version), &record.inputs)
+    }
+}
+
+/// Whether a file is what would be made, given what has `changed` in how it is asked for.
+fn status(
+    folder: &Path,
+    file: &Path,
+    written: Sha256,
+    mut changed: Vec<String>,
+    (was, now): (&str, &str),
+    inputs: &BTreeMap<PathBuf, Sha256>,
+) -> Result<PictureStatus> {
+    let Some(found) = digest_if_there(&folder.join(file))? else { return Ok(PictureStatus::Missing) };
+    if was != now {
+        changed.push(format!("version ({was}, now {now})"));
+    }
+    for (input, digest) in inputs {
+        if digest_if_there(&folder.join(input))? != Some(*digest) {
+            changed.push(input.display().to_string());
+        }
+    }
+    Ok(if !changed.is_empty() {
+        PictureStatus::Stale(changed)
+    } else if found != written {
+        PictureStatus::Altered
+    } else {
+        PictureStatus::Fresh
+    })
 }
 
 fn digest_if_there(path: &Path) -> Result<Option<Sha256>> {
@@ -212,6 +256,7 @@ mod tests {
         let manifest = Manifest {
             study: study.id.clone(),
             pictures: BTreeMap::from([(stimulus.id(), record)]),
+            maps: BTreeMap::new(),
             timings: BTreeMap::from([(stimulus.id(), timing)]),
         };
         (folder, study, manifest)

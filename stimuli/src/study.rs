@@ -1,5 +1,6 @@
 //! The study file: what is rendered, shown and asked, and how the answers will be judged.
 
+mod importance;
 mod judge;
 mod locate;
 mod picture;
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+pub use importance::{Falloff, ImportancePlan, MapRequest};
 pub use judge::{AnalysisPlan, Exclusions};
 pub use picture::{Layout, Quality, Request, Stimulus};
 pub use protocol::{Arm, Consent, DisplayGeometry, Hints, Kind, Practice, QualityCheck, Task, Timing, Wording};
@@ -44,6 +46,9 @@ pub struct Study {
     pub wording: Wording,
     /// What is counted.
     pub task: Task,
+    /// How the importance maps of the layouts are made; without it they are taken as they are drawn.
+    #[serde(default)]
+    pub importance: Option<ImportancePlan>,
     /// The scenes: the same place with its items in different positions.
     pub layouts: Vec<Layout>,
     /// The ways to render a layout.

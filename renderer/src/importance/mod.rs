@@ -2,7 +2,9 @@
 
 pub mod distance;
 pub mod fovea;
+pub mod glob;
 mod glyphs;
 pub mod map;
+pub mod overlay;
 pub mod ran;
 pub mod saliency;

@@ -8,6 +8,15 @@ use crate::raster::Raster;
 /// A value in [0, 1] per pixel, row 0 at the top.
 pub type GreyMap = Raster<f32>;
 
+/// Bits of a grey PNG's codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bits {
+    /// 256 steps.
+    Eight,
+    /// 65536 steps.
+    Sixteen,
+}
+
 /// Reads a map from a grey PNG or an EXR whose channels agree.
 ///
 /// # Errors
@@ -23,13 +32,15 @@ pub fn read(path: &Path) -> Result<GreyMap, Error> {
     map.and_then(checked).map_err(|kind| Error::new(path, kind))
 }
 
-/// Writes a map: `.png` with 16 bits, or `.exr` with three equal channels.
+/// Writes a map: `.png` with codes of `bits`, or `.exr` with three equal channels, which knows no steps.
 ///
 /// # Errors
 /// If the name says neither, a value lies outside [0, 1], or the disk refuses.
-pub fn write(path: &Path, map: &GreyMap, provenance: &Provenance) -> Result<(), Error> {
+pub fn write(path: &Path, map: &GreyMap, bits: Bits, provenance: &Provenance) -> Result<(), Error> {
     let result = checked(map.clone()).and_then(|map| match Format::of_name(path) {
-        Some(Format::Png) => AtomicFile::write_all(path, &png::encode_grey(&map, provenance)?).map_err(Kind::Write),
+        Some(Format::Png) => {
+            AtomicFile::write_all(path, &png::encode_grey(&map, bits, provenance)?).map_err(Kind::Write)
+        }
         Some(Format::Exr) => return_exr(path, &map, provenance),
         _ => Err(Kind::Damaged("a map is written as .png or .exr".into())),
     });

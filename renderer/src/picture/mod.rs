@@ -22,6 +22,7 @@ mod write;
 
 use std::path::Path;
 
+use crate::color::srgb_encode;
 use crate::raster::Raster;
 
 pub use atomic::AtomicFile;
@@ -68,6 +69,25 @@ impl Picture {
     #[must_use]
     pub fn layer(&self, name: &str) -> Option<&Raster<Pixel>> {
         self.layers.iter().find(|layer| layer.name == name).map(|layer| &layer.pixels)
+    }
+
+    /// The picture as linear display light in [0, 1]: radiance is scaled by `exposure` and clamped.
+    #[must_use]
+    pub fn display_light(&self, exposure: f64) -> Raster<Pixel> {
+        self.shown(exposure, |light| light.clamp(0.0, 1.0))
+    }
+
+    /// The sRGB codes in [0, 1] that show the picture; radiance is scaled by `exposure` and clamped.
+    #[must_use]
+    pub fn codes(&self, exposure: f64) -> Raster<Pixel> {
+        self.shown(exposure, srgb_encode)
+    }
+
+    fn shown(&self, exposure: f64, change: impl Fn(f64) -> f64) -> Raster<Pixel> {
+        let factor = if self.quantity == Quantity::Radiance { exposure } else { 1.0 };
+        let change = |value: f32| change(f64::from(value) * factor) as f32;
+        let pixels = self.beauty.values().iter().map(|pixel| pixel.map(change)).collect();
+        Raster::from_values(self.beauty.width(), self.beauty.height(), pixels).expect("as many pixels as the beauty")
     }
 }
 

@@ -1,14 +1,14 @@
 //! What a person would see of a difference, by published metrics, each computed by its own library.
 
 use super::display::Display;
-use super::{Picture, Quantity};
+use super::Picture;
 use crate::color::srgb_encode;
 use crate::raster::Raster;
 
-/// The sRGB codes in [0, 1] that show a picture, three per pixel. Radiance is scaled by `exposure` and clamped.
-fn codes(picture: &Picture, exposure: f64) -> Vec<f32> {
-    let factor = if picture.quantity == Quantity::Radiance { exposure } else { 1.0 };
-    picture.beauty.values().iter().flatten().map(|&value| srgb_encode(f64::from(value) * factor) as f32).collect()
+/// The sRGB codes in [0, 1] of a picture, three per pixel.
+fn codes(picture: &Picture, exposure: f64) -> impl Iterator<Item = f32> {
+    let codes = picture.codes(exposure);
+    codes.values().iter().flatten().copied().collect::<Vec<_>>().into_iter()
 }
 
 /// LDR-FLIP of Andersson et al. 2020 ("FLIP: A Difference Evaluator for Alternating Images"), one value in [0, 1] per pixel.
@@ -21,7 +21,7 @@ pub(super) fn flip(
     let (width, height) = (reference.beauty.width(), reference.beauty.height());
     // FLIP assumes an sRGB screen: codes for another one are brought to the codes that show the same light.
     let image = |picture| {
-        let codes = codes(picture, exposure).into_iter();
+        let codes = codes(picture, exposure);
         let shown = codes.map(|code| srgb_encode(display.decode(f64::from(code))) as f32);
         flip_rs::RgbImage::new(width, height, shown.collect())
     };
@@ -59,7 +59,7 @@ pub(super) fn jod(
     let geometry = Geometry::from_ppd(resolution, display.pixels_per_degree())?;
     let model = DisplayModel::new("display file", photometry, geometry, "sRGB")?;
     let image = |picture| {
-        let codes = codes(picture, exposure).into_iter();
+        let codes = codes(picture, exposure);
         // The library decodes sRGB; a screen with another curve is described by the sRGB codes of the light that it shows.
         let shown = codes.map(|code| srgb_encode(display.decode(f64::from(code))) as f32);
         Image::new(width, height, 3, shown.collect())

@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, Write};
 
-use super::grey::GreyMap;
+use super::grey::{Bits, GreyMap};
 use super::{Header, Kind, Picture, Pixel, Provenance, Quantity};
 use crate::color::{srgb_decode, srgb_encode};
 use crate::raster::Raster;
@@ -76,15 +76,22 @@ pub(super) fn read_grey(bytes: &[u8]) -> Result<GreyMap, Kind> {
     Raster::from_values(image.width, image.height, values).ok_or_else(size_mismatch)
 }
 
-/// The bytes of a 16-bit grey PNG with code = value x 65535, rounded, and no transfer curve.
-pub(super) fn encode_grey(map: &GreyMap, provenance: &Provenance) -> Result<Vec<u8>, Kind> {
+/// The bytes of a grey PNG with code = value x the largest code, rounded, and no transfer curve.
+pub(super) fn encode_grey(map: &GreyMap, bits: Bits, provenance: &Provenance) -> Result<Vec<u8>, Kind> {
     let mut bytes = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut bytes, map.width() as u32, map.height() as u32);
     encoder.set_color(::png::ColorType::Grayscale);
-    encoder.set_depth(::png::BitDepth::Sixteen);
+    let (depth, largest) = match bits {
+        Bits::Eight => (::png::BitDepth::Eight, 255.0),
+        Bits::Sixteen => (::png::BitDepth::Sixteen, 65535.0),
+    };
+    encoder.set_depth(depth);
     encoder.add_itxt_chunk(PROVENANCE.into(), provenance.to_json()).map_err(encoding)?;
-    let code = |&value: &f32| ((f64::from(value) * 65535.0).round() as u16).to_be_bytes();
-    let data: Vec<u8> = map.values().iter().flat_map(code).collect();
+    let codes = map.values().iter().map(|&value| (f64::from(value) * largest).round() as u16);
+    let data: Vec<u8> = match bits {
+        Bits::Eight => codes.map(|code| code as u8).collect(),
+        Bits::Sixteen => codes.flat_map(u16::to_be_bytes).collect(),
+    };
     let mut writer = encoder.write_header().map_err(encoding)?;
     writer.write_image_data(&data).map_err(encoding)?;
     writer.finish().map_err(encoding)?;

@@ -223,9 +223,13 @@ fn names_without_a_format_are_refused() {
 fn grey_maps_are_code_over_maximum() {
     let folder = tempfile::tempdir().unwrap();
     let map = Raster::from_values(3, 2, vec![0.0, 1.0, 0.5, 0.25, 1.0 / 3.0, 0.1]).unwrap();
-    for (name, tolerance) in [("map.png", 0.5 / 65535.0), ("map.exr", 0.0)] {
+    for (name, bits, tolerance) in [
+        ("map.png", Bits::Sixteen, 0.5 / 65535.0),
+        ("eight.png", Bits::Eight, 0.5 / 255.0),
+        ("map.exr", Bits::Eight, 0.0),
+    ] {
         let path = folder.path().join(name);
-        grey::write(&path, &map, &Provenance::default()).unwrap();
+        grey::write(&path, &map, bits, &Provenance::default()).unwrap();
         let again = grey::read(&path).unwrap();
         for (before, after) in map.values().iter().zip(again.values()) {
             assert!((before - after).abs() <= tolerance * 1.0001, "{name}: {before} {after}");
@@ -254,7 +258,7 @@ fn maps_with_colour_or_values_out_of_range_are_errors() {
     write(&path, &large, Compression::Zip).unwrap();
     assert!(matches!(grey::read(&path).unwrap_err().kind, Kind::Range { x: 1, y: 1, .. }));
     let bad = Raster::from_values(1, 1, vec![f32::NAN]).unwrap();
-    assert!(grey::write(&folder.path().join("nan.png"), &bad, &Provenance::default()).is_err());
+    assert!(grey::write(&folder.path().join("nan.png"), &bad, Bits::Sixteen, &Provenance::default()).is_err());
 }
 
 proptest! {

@@ -68,6 +68,7 @@ pub(super) fn problems(study: &Study) -> Vec<Problem> {
     let mut found = Problems::default();
     found.name(&[Key("id")], &study.id);
     display_and_timing(study, &mut found);
+    check_importance(study, &mut found);
     texts(study, &mut found);
     for (i, layout) in study.layouts.iter().enumerate() {
         check_layout(study, i, layout, &mut found);
@@ -96,6 +97,27 @@ fn display_and_timing(study: &Study, found: &mut Problems) {
     found.number(&[Key("timing"), Key("interval_s")], timing.interval_s, 0.0, false);
     for (key, seconds) in [("fixation_s", timing.fixation_s), ("gap_s", timing.gap_s)] {
         found.number(&[Key("timing"), Key(key)], seconds, 0.0, true);
+    }
+}
+
+fn check_importance(study: &Study, found: &mut Problems) {
+    let Some(plan) = &study.importance else { return };
+    let at = |key| [Key("importance"), Key(key)];
+    found.number(&at("fovea_deg"), plan.fovea_deg, 0.0, true);
+    if !(0.0..=1.0).contains(&plan.saliency_weight) {
+        let help = "0 is the task map alone, 1 the saliency map alone.";
+        found.add(&at("saliency_weight"), "the weight lies in 0 .. 1", help);
+    }
+    for (i, layout) in study.layouts.iter().enumerate() {
+        let Some(map) = &layout.importance else { continue };
+        if study.layouts[..i].iter().any(|earlier| earlier.importance.as_ref() == Some(map)) {
+            let path = [Key("layouts"), Index(i), Key("importance")];
+            found.add(&path, format!("`{}` is made for another layout too", map.display()), "Rename one.");
+        }
+        if plan.saliency_weight < 1.0 && layout.true_counts.values().all(|&count| count == 0) {
+            let message = "this layout has a task map, and nothing in it counts";
+            found.add(&[Key("layouts"), Index(i)], message, "Say in `true_counts` what there is.");
+        }
     }
 }
 
@@ -304,6 +326,10 @@ mod tests {
             ("bound_jod = 0.5", "bound_jod = 1.0", "1 JOD is 0.2500, not 0.132"),
             ("exposure = ", "exposure = nan #", "more than 0, found NaN"),
             ("demo = true", "demo = treu", "invalid"),
+            ("fovea_deg = 2.0", "fovea_deg = -2.0", "at least 0, found -2"),
+            ("falloff = \"mar\"", "falloff = \"linear\"", "unknown variant `linear`"),
+            ("falloff = \"mar\"", "falloff = \"mar\"\nsaliency_weight = 2.0", "the weight lies in 0 .. 1"),
+            ("importance = \"maps/b.png\"", "importance = \"maps/a.png\"", "made for another layout too"),
             ("seed = 2005", "sede = 2005", "unknown field `sede`"),
         ] {
             let said = said(from, to);

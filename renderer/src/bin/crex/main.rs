@@ -3,6 +3,7 @@
 
 mod compare;
 mod console;
+mod importance;
 mod options;
 mod output;
 mod plan;
@@ -36,6 +37,8 @@ enum Command {
     Render(Box<render::Args>),
     /// Explain a crex stage by stage
     Plan(plan::Args),
+    /// Make a map of where people look: task objects, what catches the eye, or both
+    Importance(Box<importance::Args>),
     /// Measure how far a picture lies from a reference
     Compare(compare::Args),
     /// Render the pictures of a study that are missing or stale, or check them
@@ -43,7 +46,7 @@ enum Command {
 }
 
 /// The commands that take rpict's options.
-const RENDERING: [&str; 1] = ["render"];
+const RENDERING: [&str; 2] = ["render", "importance"];
 
 fn main() -> ExitCode {
     let clock = MonotonicClock::start();
@@ -56,14 +59,15 @@ fn main() -> ExitCode {
 
 fn run(words: Vec<OsString>, clock: &MonotonicClock) -> Result<(), Failure> {
     let (words, radiance) = radiance_options(words)?;
-    let matches = Cli::command()
-        .mut_subcommand(RENDERING[0], |command| command.after_long_help(spellings::help()))
-        .try_get_matches_from(words)
-        .map_err(Failure::Usage)?;
+    let cli = RENDERING.iter().fold(Cli::command(), |cli, name| {
+        cli.mut_subcommand(name, |command| command.after_long_help(spellings::help()))
+    });
+    let matches = cli.try_get_matches_from(words).map_err(Failure::Usage)?;
     let cli = Cli::from_arg_matches(&matches).map_err(Failure::Usage)?;
     match cli.command {
         Command::Render(args) => render::run(&args, &radiance, clock),
         Command::Plan(args) => plan::run(&args),
+        Command::Importance(args) => importance::run(&args, &radiance, clock).map(drop),
         Command::Compare(args) => compare::run(&args),
         Command::Stimuli(args) => stimuli::run(&args, clock),
     }

@@ -1,6 +1,8 @@
 //! `crex stimuli`: renders the pictures of a study that are missing or stale, and keeps its manifest.
 //!
-//! A picture of a study is exactly what `crex render` makes of the words that [`words`] gives.
+//! First the importance maps, if the study says how they are made; then the pictures. A picture of a study is exactly what `crex render` makes of the words that [`words`] gives.
+
+mod maps;
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -50,10 +52,14 @@ fn version() -> String {
 pub(crate) fn run(args: &Args, clock: &MonotonicClock) -> Result<(), Failure> {
     let study = Study::load(&args.study).map_err(failure)?;
     let mut manifest = Manifest::load(&study.folder).map_err(failure)?;
-    let jobs = jobs(&study, &manifest, &args.only)?;
+    let needed = needed_maps(&study, &args.only)?;
+    let maps = maps::maps(&study, &manifest, &needed)?;
     if args.check {
-        return check(&jobs);
+        return check(&maps, &jobs(&study, &manifest, &args.only)?);
     }
+    maps::make(&study, &maps, &mut manifest, args.force, clock)?;
+    // Whether a picture is stale depends on the maps.
+    let jobs = jobs(&study, &manifest, &args.only)?;
     let jobs: Vec<Job> = jobs.into_iter().filter(|job| args.force || job.status != PictureStatus::Fresh).collect();
     if jobs.is_empty() {
         console::say("note", "every picture is what would be made");
@@ -77,17 +83,16 @@ pub(crate) fn run(args: &Args, clock: &MonotonicClock) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The files of the maps that modulate these pictures.
+fn needed_maps(study: &Study, only: &[String]) -> Result<Vec<PathBuf>, Failure> {
+    let stimuli = chosen(study, only)?;
+    Ok(stimuli.iter().filter_map(|stimulus| study.request(stimulus)?.importance).collect())
+}
+
 /// The pictures of the study, or those of them that were asked for.
 fn jobs(study: &Study, manifest: &Manifest, only: &[String]) -> Result<Vec<Job>, Failure> {
-    let stimuli = study.stimuli();
-    if let Some(unknown) = only.iter().find(|only| !stimuli.iter().any(|stimulus| stimulus.id() == **only)) {
-        let known: Vec<String> = stimuli.iter().map(Stimulus::id).collect();
-        let message = format!("--only {unknown}: the study shows no such picture; it shows {}", known.join(", "));
-        return Err(Failure::input(message));
-    }
-    stimuli
+    chosen(study, only)?
         .into_iter()
-        .filter(|stimulus| only.is_empty() || only.contains(&stimulus.id()))
         .filter_map(|stimulus| Some((study.request(&stimulus)?, stimulus)))
         .map(|(request, stimulus)| {
             let status = manifest.status(&study.folder, &stimulus.id(), &request, &version()).map_err(failure)?;
@@ -96,17 +101,30 @@ fn jobs(study: &Study, manifest: &Manifest, only: &[String]) -> Result<Vec<Job>,
         .collect()
 }
 
-/// One line a picture; fails if one is not what would be made.
-fn check(jobs: &[Job]) -> Result<(), Failure> {
-    let lines: String = jobs.iter().map(|job| format!("{}: {}\n", job.stimulus.id(), word(&job.status))).collect();
+/// What the study shows, or those that were asked for.
+fn chosen(study: &Study, only: &[String]) -> Result<Vec<Stimulus>, Failure> {
+    let stimuli = study.stimuli();
+    if let Some(unknown) = only.iter().find(|only| !stimuli.iter().any(|stimulus| stimulus.id() == **only)) {
+        let known: Vec<String> = stimuli.iter().map(Stimulus::id).collect();
+        let message = format!("--only {unknown}: the study shows no such picture; it shows {}", known.join(", "));
+        return Err(Failure::input(message));
+    }
+    Ok(stimuli.into_iter().filter(|stimulus| only.is_empty() || only.contains(&stimulus.id())).collect())
+}
+
+/// One line a map and a picture; fails if one is not what would be made.
+fn check(maps: &[maps::Map], jobs: &[Job]) -> Result<(), Failure> {
+    let maps = maps.iter().map(|map| (map.file.display().to_string(), &map.status));
+    let all: Vec<_> = maps.chain(jobs.iter().map(|job| (job.stimulus.id(), &job.status))).collect();
+    let lines: String = all.iter().map(|(name, status)| format!("{name}: {}\n", word(status))).collect();
     console::print(&lines)?;
-    let wrong = jobs.iter().filter(|job| job.status != PictureStatus::Fresh).count();
+    let wrong = all.iter().filter(|(_, status)| **status != PictureStatus::Fresh).count();
     if wrong == 0 {
         return Ok(());
     }
     Err(Failure::Cannot(format!(
-        "{wrong} of {} pictures are not what would be made; `crex stimuli` renders them",
-        jobs.len()
+        "{wrong} of {} files are not what would be made; `crex stimuli` makes them",
+        all.len()
     )))
 }
 
@@ -146,7 +164,8 @@ fn make(
         std::fs::create_dir_all(folder).map_err(|error| Failure::Cannot(format!("{}: {error}", folder.display())))?;
     }
     // What was read, and not what may be there when the rendering has ended.
-    let inputs = inputs(study, &job.request, &prepared.files)?;
+    let own = std::iter::once(&job.request.view).chain(&job.request.importance);
+    let inputs = inputs(study, own, &prepared.files)?;
     let rendering = prepared.render(clock, None)?;
     output::write_film(&path, &rendering.film, job.request.exposure, &prepared.request.provenance)?;
     let record = PictureRecord {
@@ -202,9 +221,13 @@ fn parsed(words: Vec<OsString>) -> Result<(render::Args, options::RadianceOption
     }
 }
 
-/// Digests of all files that were read, by their paths from the study's folder.
-fn inputs(study: &Study, request: &Request, scene: &[PathBuf]) -> Result<BTreeMap<PathBuf, Sha256>, Failure> {
-    let own = std::iter::once(&request.view).chain(&request.importance).map(|file| study.folder.join(file));
+/// Digests of all files that were read, by their paths from the study's folder: its `own` files, and those of the scene.
+fn inputs<'a>(
+    study: &Study,
+    own: impl IntoIterator<Item = &'a PathBuf>,
+    scene: &[PathBuf],
+) -> Result<BTreeMap<PathBuf, Sha256>, Failure> {
+    let own = own.into_iter().map(|file| study.folder.join(file));
     scene
         .iter()
         .cloned()
