@@ -50,7 +50,8 @@ fn tiny_study() -> tempfile::TempDir {
     write("shell.rad", "!genbox grey room 4 20 4 -i | xform -t -1 -5 0\n!xform -t 0 9 0 pane.rad\n");
     write("pane.rad", "pane polygon pane 0 0 12 0 0 0  3 0 0  3 0 3  0 0 3\n");
     // One item of each kind that the study counts, all at one place.
-    let kinds = ["extinguisher", "hose_reel", "blanket", "call_point", "exit_sign", "hydrant_sign", "detector", "sprinkler"];
+    let kinds =
+        ["extinguisher", "hose_reel", "blanket", "call_point", "exit_sign", "hydrant_sign", "detector", "sprinkler"];
     let items: String = kinds.iter().map(|kind| format!("grey sphere {kind}.1.body 0 0 4 2.2 6 1 .2\n")).collect();
     for layout in ["layout_a.rad", "layout_b.rad", "practice_a.rad", "practice_b.rad"] {
         write(layout, &format!("lamp sphere lamp 0 0 4 1.3 5 2 .2\n{items}"));
@@ -140,7 +141,7 @@ fn wrong_input_is_told_and_renders_nothing() {
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("a_hq, a_cbq"), "{}", stderr(&output));
     assert_eq!(code(&crex_stimuli(&study.join("nowhere"), &[])), 2);
-    assert!(!study.join("manifest.json").exists());
+    assert!(!study.join("pictures").exists() && Manifest::load(study).unwrap().pictures.is_empty());
 }
 
 #[test]

@@ -160,13 +160,7 @@ impl Manifest {
     ///
     /// # Errors
     /// If a file that is there cannot be read.
-    pub fn map_status(
-        &self,
-        folder: &Path,
-        file: &Path,
-        request: &MapRequest,
-        version: &str,
-    ) -> Result<PictureStatus> {
+    pub fn map_status(&self, folder: &Path, file: &Path, request: &MapRequest, version: &str) -> Result<PictureStatus> {
         let Some(record) = self.maps.get(file) else { return Ok(PictureStatus::Missing) };
         let changed = if record.request == *request { Vec::new() } else { vec!["the plan of the map".to_owned()] };
         status(folder, file, record.sha256, changed, (&record.version, version), &record.inputs)

@@ -1,7 +1,7 @@
 //! What a person would see of a difference, by published metrics, each computed by its own library.
 
-use super::display::Display;
 use super::Picture;
+use super::display::Display;
 use crate::color::srgb_encode;
 use crate::raster::Raster;
 

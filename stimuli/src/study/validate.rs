@@ -328,7 +328,11 @@ mod tests {
             ("demo = true", "demo = treu", "invalid"),
             ("fovea_deg = 2.0", "fovea_deg = -2.0", "at least 0, found -2"),
             ("falloff = \"mar\"", "falloff = \"linear\"", "unknown variant `linear`"),
-            ("falloff = \"mar\"", "falloff = \"mar\"\nsaliency_weight = 2.0", "the weight lies in 0 .. 1"),
+            (
+                "fovea_deg = 2.0\nfalloff",
+                "fovea_deg = 2.0\nsaliency_weight = 2.0\nfalloff",
+                "the weight lies in 0 .. 1",
+            ),
             ("importance = \"maps/b.png\"", "importance = \"maps/a.png\"", "made for another layout too"),
             ("seed = 2005", "sede = 2005", "unknown field `sede`"),
         ] {

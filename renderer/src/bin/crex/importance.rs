@@ -47,7 +47,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ID,..", value_delimiter = ',')]
     task: Vec<String>,
     /// Diameter of the fovea in degrees: within half of it from a task object the map is 1
-    #[arg(long, value_name = "DEG", default_value_t = 2.0)]
+    #[arg(long, value_name = "DEG", default_value_t = 2.0, allow_negative_numbers = true)]
     fovea: f64,
     /// How the map falls off beyond: mar (smallest resolved angle), cortical (magnification) or geisler-perry (highest
     /// frequency seen)
