@@ -77,8 +77,8 @@ pub(super) fn jod(
 /// below) on the pictures that [`pictures`](tests::pictures) makes by the same whole-number formulas.
 #[cfg(test)]
 mod tests {
-    use super::super::Provenance;
     use super::super::display::Transfer;
+    use super::super::{Provenance, Quantity};
     use super::*;
     use crate::color::srgb_decode;
     use crate::picture::compare;

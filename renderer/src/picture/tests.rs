@@ -4,6 +4,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 
+use super::grey::Bits;
 use super::*;
 use crate::color::srgb_encode;
 
