@@ -12,5 +12,8 @@ pub(super) const ROULETTE: u32 = 32;
 /// Which way the number of samples is rounded that run the members of `{ }`.
 pub(super) const IMPORTANCE: u32 = 48;
 
+/// Which lights are tested for shadow.
+pub(super) const CHOICE: u32 = 49;
+
 /// The point on light number i, the i-th from here.
 pub(super) const LIGHT: u32 = 64;

@@ -1,4 +1,9 @@
 //! Direct light at a hit: one point of each light, and what is left of its radiance on the way.
+//!
+//! Every light proposes a point. What a proposal would bring if nothing were in the way costs little to know, so where
+//! there are more proposals than the hit has shadow rays, those that would bring much are tested more often, and what
+//! they bring counts the less: an unbiased estimate (resampling in the sense of J. Talbot, D. Cline and P. Egbert,
+//! "Importance Resampling for Global Illumination", EGSR 2005).
 
 use glam::Vec3;
 
@@ -6,7 +11,7 @@ use crate::color::Rgb;
 use crate::geometry::{Aggregate, Hit, Ray, Shadow, SurfaceId};
 use crate::material::{Alternate, EmitterKind, Interaction, Material, Response};
 use crate::sample::Sampler;
-use crate::scene::{Leg, Light, Scene, SourceId};
+use crate::scene::{Leg, Light, LightSample, Scene, SourceId};
 
 use super::dimension;
 use super::ray::transmittance;
@@ -16,6 +21,24 @@ use super::ray::transmittance;
 pub(super) struct Scratch {
     crossings: Vec<Hit>,
     legs: Vec<Leg>,
+    proposals: Vec<Proposal>,
+}
+
+/// What a light would bring from one of its points.
+#[derive(Clone, Copy, Debug)]
+struct Proposal {
+    /// Its number in the scene.
+    light: u32,
+    sample: LightSample,
+    /// Radiance sent back along the ray if nothing is in the way.
+    unshadowed: Rgb,
+}
+
+impl Proposal {
+    /// What decides how often it is tested.
+    fn size(&self) -> f64 {
+        self.unshadowed.element_sum()
+    }
 }
 
 /// Crossings of refracting surfaces after which a shadow ray is given up. Rays that are only refracted leave a solid
@@ -36,32 +59,52 @@ pub(super) struct Lit<'a> {
 }
 
 impl Lit<'_> {
-    /// Radiance that a surface sends back along the ray, of the light that all sources send it.
-    pub(super) fn light(&self, response: &Response, sampler: &Sampler, scratch: &mut Scratch) -> Rgb {
-        let mut sum = Rgb::ZERO;
-        for (light, dimension) in self.scene.lights.iter().zip(dimension::LIGHT..) {
-            let Some(sample) = light.sample(self.start.origin, sampler.pair(dimension)) else { continue };
+    /// Radiance that a surface sends back along the ray, of the light that all sources send it. At most about `tests`
+    /// shadow rays are spent on it.
+    pub(super) fn light(&self, response: &Response, sampler: &Sampler, tests: usize, scratch: &mut Scratch) -> Rgb {
+        let mut proposals = std::mem::take(&mut scratch.proposals);
+        proposals.clear();
+        for (light, number) in self.scene.lights.iter().zip(0_u32..) {
+            let u = sampler.pair(dimension::LIGHT + number);
+            let Some(sample) = light.sample(self.start.origin, u) else { continue };
             let unshadowed = response.direct(sample.dir, sample.solid_angle) * sample.radiance;
-            if unshadowed == Rgb::ZERO {
-                continue;
+            if unshadowed != Rgb::ZERO {
+                proposals.push(Proposal { light: number, sample, unshadowed });
             }
-            let start = Ray { dir: sample.dir, t_max: sample.distance, ..self.start };
-            let visible = if light.relay().is_empty() {
-                let target = match light.source() {
-                    SourceId::Surface(surface) => Some(surface),
-                    SourceId::Far(_) => None,
-                };
-                let leg = Leg { ray: start, target, mirror: None };
-                self.visible(light, &start, std::slice::from_ref(&leg), &mut scratch.crossings)
-            } else {
-                if !light.legs(self.scene, start, &sample, &mut scratch.legs) {
-                    continue;
-                }
-                self.visible(light, &start, &scratch.legs, &mut scratch.crossings)
-            };
-            sum += unshadowed * visible;
         }
+        let mut sum = Rgb::ZERO;
+        if proposals.len() <= tests {
+            for proposal in &proposals {
+                sum += proposal.unshadowed * self.arriving(proposal, scratch);
+            }
+        } else {
+            let sizes = proposals.iter().map(Proposal::size);
+            choose(sizes, tests, sampler.single(dimension::CHOICE), |index, probability| {
+                let proposal = &proposals[index];
+                sum += proposal.unshadowed * self.arriving(proposal, scratch) / probability;
+            });
+        }
+        scratch.proposals = proposals;
         sum
+    }
+
+    /// The fraction of a proposal's light that arrives.
+    fn arriving(&self, proposal: &Proposal, scratch: &mut Scratch) -> Rgb {
+        let light = &self.scene.lights[proposal.light as usize];
+        let sample = &proposal.sample;
+        let start = Ray { dir: sample.dir, t_max: sample.distance, ..self.start };
+        if !light.relay().is_empty() {
+            if !light.legs(self.scene, start, sample, &mut scratch.legs) {
+                return Rgb::ZERO;
+            }
+            return self.visible(light, &start, &scratch.legs, &mut scratch.crossings);
+        }
+        let target = match light.source() {
+            SourceId::Surface(surface) => Some(surface),
+            SourceId::Far(_) => None,
+        };
+        let leg = Leg { ray: start, target, mirror: None };
+        self.visible(light, &start, std::slice::from_ref(&leg), &mut scratch.crossings)
     }
 
     /// The fraction of a light's radiance that is left at the hit, which sees it along `legs`.
@@ -182,5 +225,63 @@ impl Lit<'_> {
             ray = Ray::new(hit.point, dir).leaving(hit.surface);
         }
         Rgb::ZERO
+    }
+}
+
+/// Picks about `picks` of some things, each with a probability in proportion to its size, at most 1 (systematic
+/// sampling by one number `u` in [0, 1), so neighbours in the order are rarely picked together); `take` gets each with
+/// its probability.
+fn choose(sizes: impl Iterator<Item = f64> + Clone, picks: usize, u: f64, mut take: impl FnMut(usize, f64)) {
+    let step = sizes.clone().sum::<f64>() / picks as f64;
+    let (mut passed, mut next) = (0.0, u * step);
+    for (index, size) in sizes.enumerate() {
+        passed += size;
+        if size >= step {
+            take(index, 1.0);
+        } else if passed > next && size / step > 0.0 {
+            take(index, size / step);
+        }
+        if next < passed {
+            next += step * ((passed - next) / step).ceil();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Over a grid of `u` each thing is picked as often as its probability says, and the sum of what is picked,
+        /// over its probability, has the mean of the whole sum.
+        #[test]
+        fn choices_are_unbiased(sizes in prop::collection::vec(1e-3..1.0_f64, 2..12), picks in 1..5_usize) {
+            prop_assume!(sizes.len() > picks);
+            let total: f64 = sizes.iter().sum();
+            let steps = 4_000;
+            let (mut mean, mut most) = (0.0, 0);
+            for i in 0..steps {
+                let mut count = 0;
+                choose(sizes.iter().copied(), picks, (f64::from(i) + 0.5) / f64::from(steps), |index, probability| {
+                    mean += sizes[index] / probability / f64::from(steps);
+                    count += 1;
+                });
+                most = most.max(count);
+            }
+            // Each thing's share of the grid is off by at most one of its steps at either end.
+            let largest_quotient = total / picks as f64;
+            let rounding = 2.0 * sizes.len() as f64 * largest_quotient / f64::from(steps);
+            prop_assert!((mean - total).abs() <= rounding, "{mean} {total}");
+            prop_assert!(most <= picks + 1);
+        }
+    }
+
+    #[test]
+    fn nothing_is_picked_of_nothing_and_things_of_any_size_can_be() {
+        choose([0.0; 0].into_iter(), 1, 0.5, |_, _| unreachable!());
+        let mut picked = Vec::new();
+        choose([1e-300, 1e300, 1e-300].into_iter(), 1, 0.0, |index, probability| picked.push((index, probability)));
+        assert_eq!(picked, [(1, 1.0)]);
     }
 }

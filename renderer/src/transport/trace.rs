@@ -15,6 +15,14 @@ use super::spawn::{Departure, Limits, Spawner};
 /// Extinction times length from which on absorption lowers a ray's weight (rpict).
 const WEIGHTY_ABSORPTION: f64 = 0.1;
 
+/// Shadow rays for each hit that the eye sees, directly or by ideal events; for each behind one diffuse event or only
+/// glossy ones; and for each further on. The noise of long paths comes from where they go, so there one is enough. In a
+/// corridor of five lights and their images in a mirror, 4, 2 and 1 gave the least error for the time; 8 costs a twentieth
+/// more and leaves seen shadows, which no filter smooths, less than half the noise.
+const SEEN_TESTS: usize = 8;
+const NEAR_TESTS: usize = 2;
+const FAR_TESTS: usize = 1;
+
 /// Everything that the tracing of a ray depends on but the ray.
 pub struct Tracer<'a> {
     /// What there is.
@@ -99,7 +107,12 @@ impl Tracer<'_> {
                 if !self.scene.lights.is_empty() && response.takes_direct_light() {
                     let start = Ray::new(hit.point, last.dir).leaving(hit.surface);
                     let lit = Lit { scene: self.scene, aggregate: self.aggregate, start, extinction };
-                    self.file(ray, ripple * lit.light(&response, sampler, scratch), spawner);
+                    let tests = match (path.blind, path.diffuse) {
+                        (false, _) => SEEN_TESTS,
+                        (true, 0 | 1) => NEAR_TESTS,
+                        _ => FAR_TESTS,
+                    };
+                    self.file(ray, ripple * lit.light(&response, sampler, tests, scratch), spawner);
                 }
             }
         }
