@@ -144,6 +144,12 @@ impl Film {
         self.ambient.as_ref()
     }
 
+    /// Puts another plane of the film's size in the place of a layer.
+    pub(crate) fn replace(&mut self, component: Component, plane: Raster<Vec3>) {
+        assert_eq!((plane.width(), plane.height()), (self.width(), self.height()), "planes are of the film's size");
+        self.layers[component] = Some(plane);
+    }
+
     /// Removes the layers of all components that are not in `reached`.
     pub fn keep(&mut self, reached: ComponentSet) {
         for (component, layer) in self.layers.iter_mut() {

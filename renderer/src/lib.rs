@@ -14,6 +14,7 @@ pub mod math;
 pub mod picture;
 pub mod rad;
 pub mod raster;
+pub mod reconstruct;
 pub mod render;
 pub mod sample;
 pub mod scene;

@@ -135,6 +135,9 @@ fn wrong_words_are_exit_2_and_a_missing_folder_exit_1() {
         (&["room.rad", "--crex", "T{RS}", "-o", "a.exr", "--thresholds", ".5"], 2, "threshold"),
         (&["room.rad", "--crex", "D", "-o", "a.exr", "--importance", "none.png"], 2, "none.png"),
         (&["room.rad", "--crex", "{D}", "-o", "a.exr", "--continuous"], 2, "--importance"),
+        (&["room.rad", "--crex", "D", "-o", "a.exr", "--filter", "D,X"], 2, "letters of components"),
+        (&["room.rad", "--crex", "D", "-o", "a.exr", "--filter", "D"], 2, "2 or more to smooth planes"),
+        (&["room.rad", "--crex", "D", "-o", "a.exr", "--filter", "D", "--layers", "first"], 2, "--layers first"),
     ] {
         let output = folder.render(words);
         assert_eq!(output.status.code(), Some(code), "{words:?}: {}", said(&output));
@@ -224,6 +227,39 @@ fn layers_add_up_to_the_beauty_and_what_nothing_reached_is_absent() {
     }
     assert_eq!(made.provenance.crex.as_deref(), Some("(TRSGM)*D"));
     assert_eq!(made.provenance.inputs[0].name, "room.rad");
+}
+
+#[test]
+fn smoothed_planes_are_less_noisy_and_the_others_stay() {
+    let folder = Folder::new();
+    let made = |more: &[&str]| {
+        folder.stats("(TRSGMD)*", &[&["--spp", "4", "-lr", "4", "-x", "64", "-y", "48"], more].concat());
+        picture::read(&folder.path("a.exr")).unwrap()
+    };
+    let plain = made(&[]);
+    let smoothed = made(&["--filter", "D", "-n", "1"]);
+    assert_eq!(made(&["--filter", "D", "-n", "2"]), smoothed);
+    for (layer, other) in plain.layers.iter().zip(&smoothed.layers) {
+        assert_eq!(layer.name, other.name);
+        let apart = |pixels: &Raster<[f32; 3]>| -> f64 {
+            let rows = pixels.values().chunks_exact(pixels.width());
+            rows.flat_map(|row| row.windows(2).map(|two| f64::from(two[0][1] - two[1][1]).powi(2))).sum()
+        };
+        let mean = |pixels: &Raster<[f32; 3]>| pixels.values().iter().map(|pixel| f64::from(pixel[1])).sum::<f64>();
+        if layer.name == "D" {
+            assert!(apart(&other.pixels) < 0.2 * apart(&layer.pixels));
+            assert!((mean(&other.pixels) / mean(&layer.pixels) - 1.0).abs() < 0.02);
+        } else {
+            // Sums over the halves instead of the whole may round differently.
+            for (a, b) in layer.pixels.values().iter().flatten().zip(other.pixels.values().iter().flatten()) {
+                assert!((a - b).abs() <= 1e-6 * a.abs(), "{}: {a} {b}", layer.name);
+            }
+        }
+    }
+    for (index, beauty) in smoothed.beauty.values().iter().enumerate() {
+        let sum: f64 = smoothed.layers.iter().map(|layer| f64::from(layer.pixels.values()[index][1])).sum();
+        assert!((sum - f64::from(beauty[1])).abs() <= 1e-5 * sum.abs());
+    }
 }
 
 #[test]

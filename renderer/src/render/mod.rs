@@ -1,5 +1,6 @@
 //! The loop: a scene, a view and a crex become a picture. The only module that sees both the schedule and the rays.
 
+mod filtered;
 mod outcome;
 mod pieces;
 mod settings;
@@ -13,6 +14,7 @@ use crate::scene::{Scene, View};
 use crate::schedule::{Clock, Scheduler};
 use crate::transport::Rule;
 
+pub use filtered::SmoothedPlane;
 pub use outcome::{Rendering, Snapshot};
 pub use settings::{RenderError, Settings};
 
@@ -94,7 +96,7 @@ impl<'a> Renderer<'a> {
     /// # Errors
     /// If the threads cannot be started.
     pub fn render(&self) -> Result<Rendering, RenderError> {
-        self.in_threads(|| self.render_tiles())?
+        self.in_threads(|| self.render_tiles(None))?
     }
 
     /// Renders the picture stage by stage, and shows its state after each. The rays of all tiles are held at once:

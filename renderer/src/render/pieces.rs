@@ -72,11 +72,11 @@ impl<'a> Renderer<'a> {
         .collect()
     }
 
-    /// The sample numbers in pieces that keep a parcel's bins small.
-    pub(super) fn ranges(&self) -> Vec<Range<u32>> {
+    /// Sample numbers in pieces that keep a parcel's bins small.
+    pub(super) fn ranges(&self, samples: Range<u32>) -> Vec<Range<u32>> {
         let rays = TILE * TILE * self.settings.limits.most_rays() as usize;
         let step = u32::try_from((RAYS_PER_PARCEL / rays).max(1)).expect("at most the rays of a parcel");
-        let samples = self.settings.samples;
-        (0..samples).step_by(step as usize).map(|start| start..samples.min(start.saturating_add(step))).collect()
+        let end = samples.end;
+        samples.step_by(step as usize).map(|start| start..end.min(start.saturating_add(step))).collect()
     }
 }

@@ -18,7 +18,7 @@ impl Renderer<'_> {
     ) -> Result<Rendering, RenderError> {
         let tracer = self.tracer();
         let mut scheduler = Scheduler::new(self.program, self.thresholds)?;
-        let ranges = self.ranges();
+        let ranges = self.ranges(0..self.settings.samples);
         let mut parcels: Vec<Parcel> = self
             .tiles()
             .into_iter()
@@ -66,7 +66,7 @@ impl Renderer<'_> {
 
     /// Makes the picture of what the parcels have brought so far.
     pub(super) fn develop(&self, parcels: &[Parcel], film: &mut Film) {
-        let ranges = self.ranges().len();
+        let ranges = self.ranges(0..self.settings.samples).len();
         let mut sums = Planes::default();
         for (tile, parcels) in self.tiles().into_iter().zip(parcels.chunks_exact(ranges)) {
             sums.clear(tile.pixels(), self.stored(), self.has_ambient());

@@ -1,12 +1,13 @@
 //! A picture tile by tile: each runs the whole crex by itself, and memory follows the number of threads.
 
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
 use crate::crex::ThresholdError;
-use crate::film::Planes;
+use crate::film::{Film, Planes};
 use crate::schedule::Scheduler;
 use crate::transport::{Parcel, Tracer, Workspace};
 use crate::work::Work;
@@ -15,10 +16,13 @@ use super::outcome::{Outcome, finish};
 use super::{RenderError, Renderer, Rendering};
 
 impl Renderer<'_> {
-    pub(super) fn render_tiles(&self) -> Result<Rendering, RenderError> {
+    /// Renders all tiles. `first`, if it is there, gets the planes that it has as the first half of the samples made them.
+    pub(super) fn render_tiles(&self, first: Option<&Mutex<Film>>) -> Result<Rendering, RenderError> {
         let tracer = self.tracer();
         let tiles = self.tiles();
-        let ranges = self.ranges();
+        let half = first.map_or(0, |_| self.first_half());
+        let ranges: Vec<Range<u32>> =
+            self.ranges(0..half).into_iter().chain(self.ranges(half..self.settings.samples)).collect();
         let film = Mutex::new(self.film());
         let done = AtomicU64::new(0);
         let all = (tiles.len() * ranges.len()) as f64;
@@ -34,6 +38,9 @@ impl Renderer<'_> {
                         parcel.restart(*tile, range.clone(), self.stored(), self.has_ambient());
                         outcome.add(self.run_alone(&tracer, parcel, workspace)?);
                         parcel.add_to(sums, self.settings.ambient);
+                        if let (true, Some(first)) = (range.end == half, first) {
+                            first.lock().expect("no thread panicked").store(*tile, sums, half);
+                        }
                         if let Some(progress) = self.progress {
                             progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all);
                         }

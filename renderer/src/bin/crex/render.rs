@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use renderer::component::Component;
 use renderer::crex::{self, Program, Setting};
 use renderer::film::Layers;
 use renderer::importance::map::ImportanceMap;
@@ -53,6 +54,10 @@ pub(crate) struct Args {
     /// Importance that each member of each { } needs, from left to right, in place of i/(n+1)
     #[arg(long, value_name = "A,B,..", value_delimiter = ',')]
     thresholds: Option<Vec<f32>>,
+    /// Smooth the planes of these components, such as D or D,G: far less noise, but biased; the message tells the noise
+    /// before and after
+    #[arg(long, value_name = "LETTERS", value_parser = component, value_delimiter = ',', conflicts_with_all = ["snapshots", "continuous"])]
+    filter: Vec<Component>,
     /// Let the map say how many samples of a pixel run the members of { }, all of them wherever it is above 0 and with
     /// the expected picture unchanged, instead of which members run
     #[arg(long, requires = "importance", conflicts_with = "thresholds")]
@@ -80,6 +85,15 @@ enum LayerChoice {
     First,
 }
 
+/// A component by its letter.
+fn component(text: &str) -> Result<Component, String> {
+    let mut letters = text.chars();
+    match (letters.next().and_then(Component::from_letter), letters.next()) {
+        (Some(component), None) => Ok(component),
+        _ => Err("expected letters of components (D, S, G, T, R, M) with commas between them".to_owned()),
+    }
+}
+
 /// Takes the picture after every stage.
 type Show<'a> = &'a mut (dyn FnMut(Snapshot<'_>) + Send);
 
@@ -91,6 +105,8 @@ pub(crate) struct Request {
     pub(crate) importance: Option<ImportanceMap>,
     pub(crate) thresholds: Option<Vec<f32>>,
     pub(crate) continuous: bool,
+    /// Components whose planes are smoothed.
+    pub(crate) filter: Vec<Component>,
     pub(crate) provenance: Provenance,
 }
 
@@ -171,12 +187,24 @@ impl Prepared {
         if self.request.continuous {
             renderer = renderer.with_continuous_importance();
         }
+        let smoothed = &self.request.filter;
         let rendering = match show {
-            None => renderer.render(),
-            Some(show) => renderer.render_stages(show),
+            Some(show) => renderer.render_stages(show).map(|rendering| (rendering, Vec::new())),
+            None if smoothed.is_empty() => renderer.render().map(|rendering| (rendering, Vec::new())),
+            None => renderer.render_smoothed(smoothed.iter().copied().collect()),
         };
-        let rendering = rendering.map_err(refused)?;
+        let (rendering, planes) = rendering.map_err(refused)?;
         progress.done();
+        for plane in planes {
+            let percent = [plane.noise_before, plane.noise_after].map(|noise| 100.0 * noise);
+            console::say(
+                "note",
+                &format!(
+                    "{} is smoothed: noise {:.2} % of its mean, {:.2} % afterwards, beside what smoothing moved",
+                    plane.component, percent[0], percent[1]
+                ),
+            );
+        }
         for span in &rendering.stopped {
             let text = crex::Warning { message: "`*` was stopped after a million runs".to_owned(), span: *span };
             console::say("warning", &text.render(program.text()));
@@ -248,6 +276,9 @@ fn request(args: &Args, options: &RadianceOptions, program: Program, inputs: Vec
             Some(map)
         }
     };
+    if !args.filter.is_empty() && matches!(args.layers, LayerChoice::First) {
+        return Err(Failure::input("--filter smooths what the last event brought: it cannot go with --layers first"));
+    }
     let mut words = format!("--spp {} --seed {}", args.spp, args.seed);
     if matches!(args.layers, LayerChoice::First) {
         words.push_str(" --layers first");
@@ -255,6 +286,10 @@ fn request(args: &Args, options: &RadianceOptions, program: Program, inputs: Vec
     if let Some(thresholds) = &args.thresholds {
         let list: Vec<String> = thresholds.iter().map(f32::to_string).collect();
         words.push_str(&format!(" --thresholds {}", list.join(",")));
+    }
+    if !args.filter.is_empty() {
+        let letters: Vec<String> = args.filter.iter().map(ToString::to_string).collect();
+        words.push_str(&format!(" --filter {}", letters.join(",")));
     }
     if args.continuous {
         words.push_str(" --continuous");
@@ -271,7 +306,8 @@ fn request(args: &Args, options: &RadianceOptions, program: Program, inputs: Vec
         exposure: None,
     };
     let (thresholds, continuous) = (args.thresholds.clone(), args.continuous);
-    Ok(Request { program, view, settings, importance, thresholds, continuous, provenance })
+    let filter = args.filter.clone();
+    Ok(Request { program, view, settings, importance, thresholds, continuous, filter, provenance })
 }
 
 /// Reads an importance map and brings it to the picture's size, with a word on how.
