@@ -57,7 +57,10 @@ fn noise_of_flat_light_falls_eightfold_and_its_mean_stays() {
     let found = smoothed(&light, 0.2, None);
     assert!(error(&found.plane, &light) < 0.082 / 8.0, "{}", error(&found.plane, &light));
     assert!((found.noise_before - 0.082).abs() < 0.004, "{}", found.noise_before);
-    assert!(found.noise_after < found.noise_before / 8.0, "{}", found.noise_after);
+    // What is said of the noise is no less than what it is: each half's weights follow the other half's noise, so the two
+    // part more than their mean errs.
+    assert!(found.noise_after < found.noise_before / 6.0, "{}", found.noise_after);
+    assert!(found.noise_after > 0.8 * error(&found.plane, &light), "{}", found.noise_after);
     let mean = found.plane.values().iter().map(|pixel| pixel.as_dvec3()).sum::<glam::DVec3>() / (SIZE * SIZE) as f64;
     // .082/48 is its deviation; five of them.
     assert!((brightness(mean) / brightness(glam::DVec3::new(2.0, 1.0, 0.5)) - 1.0).abs() < 5.0 * 0.082 / 48.0);
