@@ -8,6 +8,9 @@ use super::sources;
 use super::words::{self, Finding};
 use crate::pictures::Picture;
 
+/// Exclusions that a page lists; the JSON has more.
+const ON_THE_PAGE: usize = 200;
+
 /// A piece of a page.
 pub(super) enum Block {
     /// The page's own heading.
@@ -294,7 +297,7 @@ fn people(report: &Report, blocks: &mut Vec<Block>) {
     if report.exclusions.is_empty() {
         return;
     }
-    let rows = report.exclusions.iter().map(|excluded| {
+    let rows = report.exclusions.iter().take(ON_THE_PAGE).map(|excluded| {
         let detail = if excluded.detail.is_empty() { String::new() } else { format!(": {}", excluded.detail) };
         vec![
             excluded.session_id.clone(),
@@ -305,7 +308,7 @@ fn people(report: &Report, blocks: &mut Vec<Block>) {
         ]
     });
     let total: u64 = report.flow.excluded.iter().map(|(_, count)| count).sum();
-    let listed = report.exclusions.len();
+    let listed = report.exclusions.len().min(ON_THE_PAGE);
     let caption =
         if listed as u64 == total { "Left out".to_owned() } else { format!("Left out: the first {listed} of {total}") };
     let columns = vec!["session", "participant", "arm", "because", "where"];

@@ -176,6 +176,7 @@ fn base64(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::HashMap;
 
     /// RFC 4648, section 10.
     #[test]
@@ -190,6 +191,43 @@ mod tests {
             ("foobar", "Zm9vYmFy"),
         ] {
             assert_eq!(base64(text.as_bytes()), coded);
+        }
+    }
+
+    /// Relative luminance of `#rrggbb` (WCAG 2.2).
+    fn luminance(colour: &str) -> f64 {
+        let part = |at: usize| {
+            let code = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap()) / 255.0;
+            if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * part(1) + 0.7152 * part(3) + 0.0722 * part(5)
+    }
+
+    /// WCAG 2.2, 1.4.3 and 1.4.11: text 4.5 to 1, drawings 3 to 1, in both themes and in print. Browsers' checkers leave the
+    /// text of drawings open.
+    #[test]
+    fn colours_stand_out_in_every_theme() {
+        let style = include_str!("style.css");
+        let themes: Vec<HashMap<&str, &str>> = style
+            .split(":root {")
+            .skip(1)
+            .map(|block| block.split('}').next().unwrap())
+            .map(|block| block.split(';').filter_map(|rule| rule.trim().strip_prefix("--")?.split_once(": ")).collect())
+            .collect();
+        assert_eq!(themes.len(), 3);
+        let ratio = |theme: &HashMap<&str, &str>, front: &str, back: &str| {
+            let (a, b) = (luminance(theme[front]), luminance(theme[back]));
+            (a.max(b) + 0.05) / (a.min(b) + 0.05)
+        };
+        let text = [("ink", "paper"), ("ink", "card"), ("ink", "band"), ("muted", "paper"), ("muted", "card")];
+        let drawn = ["accent", "equivalent", "noticed", "muted", "undecided"].map(|front| (front, "paper"));
+        for theme in &themes {
+            for (front, back) in text.into_iter().chain([("warn", "warn-paper"), ("muted", "band")]) {
+                assert!(ratio(theme, front, back) >= 4.5, "{front} on {back}: {:.2}", ratio(theme, front, back));
+            }
+            for (front, back) in drawn.into_iter().chain([("accent", "band")]) {
+                assert!(ratio(theme, front, back) >= 3.0, "{front} on {back}: {:.2}", ratio(theme, front, back));
+            }
         }
     }
 

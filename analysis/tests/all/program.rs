@@ -74,6 +74,84 @@ fn wrong_input_ends_with_two_and_says_where() {
     }
 }
 
+/// Every way in which a log is broken: the program ends with 2, prints no report, leaves the file that is there alone, and
+/// says file, line and column.
+#[test]
+fn broken_logs_end_with_two_and_say_where() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = write(folder.path(), "log.csv", &[critical(1), critical(2)]);
+    let good = std::fs::read_to_string(&log).unwrap();
+    let lines: Vec<&str> = good.lines().collect();
+    let second = |line: String| format!("{}\n{}\n{line}\n", lines[0], lines[1]);
+    let changed = |from: &str, to: &str| {
+        assert!(lines[2].contains(from));
+        second(lines[2].replacen(from, to, 1)).into_bytes()
+    };
+    let latin1 = |text: String| -> Vec<u8> { text.chars().map(|character| character as u8).collect() };
+    let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(good.encode_utf16().flat_map(u16::to_le_bytes)).collect();
+    let cases: Vec<(&str, Vec<u8>, &str)> = vec![
+        (
+            "missing column",
+            good.replace("vsync,", "").into_bytes(),
+            "log.csv, line 1, column 32 (vsync): the column is missing",
+        ),
+        ("wrong type", changed("30.0", "soon"), "log.csv, line 3, column 22 (first_onset_s): expected a finite number"),
+        (
+            "mixed studies",
+            changed("corridor", "cornell"),
+            "log.csv, line 3, column 1 (study): `cornell`, but log.csv, line 2",
+        ),
+        (
+            "simulated beside real",
+            changed("false", "true"),
+            "log.csv, line 3, column 5 (simulated): true, but log.csv, line 2",
+        ),
+        (
+            "duplicate session",
+            second(lines[1].to_owned()).into_bytes(),
+            "log.csv, line 3, column 7 (trial): trial 2 after trial 2: is a row there twice, or moved?",
+        ),
+        (
+            "duplicate session, apart",
+            (second(lines[2].to_owned()) + lines[1] + "\n").into_bytes(),
+            "log.csv, line 4, column 2 (session_id): session `s0001` is already in log.csv, line 2",
+        ),
+        ("altered hash", changed("0101", "0111"), "log.csv, line 3, column 39 (stimuli_hash): `0111"),
+        ("hash cut short", changed("abab", "ab"), "log.csv, line 3, column 38 (plan_hash): expected a SHA-256 of 64"),
+        (
+            "half a row",
+            good.as_bytes()[..good.len() - 120].to_vec(),
+            "log.csv, line 3, column 38 (plan_hash): the row ends",
+        ),
+        (
+            "surplus field",
+            second(format!("{},x", lines[2])).into_bytes(),
+            "log.csv, line 3, column 43: 43 fields, expected 42",
+        ),
+        ("UTF-16", utf16, "log.csv, line 1, column 1: this is UTF-16: save the log as UTF-8"),
+        (
+            "Latin-1",
+            latin1(second(lines[2].replace("p0002", "J\u{fc}rg"))),
+            "log.csv, line 3, column 3 (participant): not UTF-8",
+        ),
+        (
+            "semicolons",
+            good.replace(',', ";").into_bytes(),
+            "log.csv, line 1, column 1: fields are set apart by semicolons",
+        ),
+        ("nothing", Vec::new(), "log.csv, line 1, column 1: the log is empty"),
+    ];
+    std::fs::write(folder.path().join("r.html"), "an earlier report").unwrap();
+    for (what, bytes, says) in cases {
+        std::fs::write(&log, bytes).unwrap();
+        let output = run(folder.path(), &["log.csv", "-o", "r.html"]);
+        let said = text(&output.stderr);
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{what}: {said}");
+        assert!(said.contains(says), "{what}: {said}");
+        assert_eq!(std::fs::read_to_string(folder.path().join("r.html")).unwrap(), "an earlier report", "{what}");
+    }
+}
+
 #[test]
 fn what_the_machine_cannot_do_ends_with_one() {
     let folder = tempfile::tempdir().unwrap();

@@ -90,6 +90,13 @@ fn reports_of_counts_fit_at_every_extreme() {
 }
 
 #[test]
+fn reports_of_ladders_fit() {
+    let ladders = crate::sentences::ladders();
+    assert!(ladders.iter().all(|report| report.ladder.is_some()));
+    ladders.iter().for_each(check);
+}
+
+#[test]
 fn the_check_itself_finds_what_is_wrong() {
     let schema: Value = serde_json::from_str(include_str!("../../report.schema.json")).unwrap();
     let mut found = Vec::new();

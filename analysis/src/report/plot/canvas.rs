@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::report::html::escape;
+use crate::report::numbers::short;
 
 /// Width of a plot that stands alone, in its own units: about as many as the pixels it gets, so that type keeps its size.
 pub(super) const WIDE: f64 = 720.0;
@@ -109,6 +110,16 @@ impl Scale {
     }
 }
 
+/// Ticks for the logarithms to the base 10 of positive values: 1, 2 and 5 in every power of ten, only the ones where there
+/// would be too many, labelled with the values.
+pub(super) fn log_ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
+    let factors: &[f64] = if high - low > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let powers = low.floor().max(-300.0) as i32..=high.ceil().min(300.0) as i32;
+    let values = powers.flat_map(|power| factors.iter().map(move |factor| factor * 10.0_f64.powi(power)));
+    let inside = values.map(|value| (value.log10(), short(value)));
+    inside.filter(|(at, _)| (low..=high).contains(at)).collect()
+}
+
 /// A number on an axis: as many digits as its neighbours need to differ.
 pub(super) fn tick_label(value: f64, ticks: &[f64], percent: bool) -> String {
     let factor = if percent { 100.0 } else { 1.0 };
@@ -137,6 +148,19 @@ pub(super) struct Frame {
 impl Frame {
     /// Draws the frame that fills a canvas. `percent` says which axes are shares.
     pub(super) fn draw(canvas: &mut Canvas, x: [f64; 2], y: [f64; 2], titles: [&str; 2], percent: [bool; 2]) -> Self {
+        let ticks = Scale { values: x, positions: x }.ticks(6.0);
+        let labels = ticks.iter().map(|&tick| (tick, tick_label(tick, &ticks, percent[0]))).collect();
+        Self::with_ticks(canvas, [x, y], titles, labels, percent[1])
+    }
+
+    /// The same with ticks of one's own along x: where, and what is written there.
+    pub(super) fn with_ticks(
+        canvas: &mut Canvas,
+        [x, y]: [[f64; 2]; 2],
+        titles: [&str; 2],
+        x_ticks: Vec<(f64, String)>,
+        percent: bool,
+    ) -> Self {
         let [width, height] = canvas.size;
         let (left, right, top, bottom) = (60.0, width - 24.0, 28.0, height - 46.0);
         let frame =
@@ -145,13 +169,12 @@ impl Frame {
         for &tick in &ticks {
             let at = frame.y.at(tick);
             canvas.line("grid", [left, at], [right, at]);
-            canvas.text("tick", [left - 8.0, at + 4.0], Anchor::End, &tick_label(tick, &ticks, percent[1]));
+            canvas.text("tick", [left - 8.0, at + 4.0], Anchor::End, &tick_label(tick, &ticks, percent));
         }
-        let ticks = frame.x.ticks(6.0);
-        for &tick in &ticks {
+        for (tick, label) in x_ticks {
             let at = frame.x.at(tick);
             canvas.line("axis", [at, bottom], [at, bottom + 5.0]);
-            canvas.text("tick", [at, bottom + 19.0], Anchor::Middle, &tick_label(tick, &ticks, percent[0]));
+            canvas.text("tick", [at, bottom + 19.0], Anchor::Middle, &label);
         }
         canvas.line("axis", [left, bottom], [right, bottom]);
         canvas.text("title", [0.5 * (left + right), height - 6.0], Anchor::Middle, titles[0]);
@@ -182,6 +205,14 @@ mod tests {
         assert_eq!(tick_label(0.2, &[0.0, 0.2, 0.4], false), "0.2");
         assert_eq!(tick_label(0.25, &[0.0, 0.25, 0.5], false), "0.25");
         assert_eq!(tick_label(-0.0, &[-1.0, 0.0, 1.0], false), "0");
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_labelled_with_their_values() {
+        let labels = |range| -> Vec<String> { log_ticks(range).into_iter().map(|(_, label)| label).collect() };
+        assert_eq!(labels([0.4, 2.1]), ["5", "10", "20", "50", "100"]);
+        assert_eq!(labels([-1.5, 2.5]), ["0.1", "1", "10", "100"]);
+        assert!((log_ticks([0.4, 2.1])[0].0 - 5.0_f64.log10()).abs() < 1e-15);
     }
 
     #[test]

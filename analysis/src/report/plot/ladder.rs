@@ -1,7 +1,7 @@
 //! The psychometric function over the time spent on a picture.
 
 use super::Figure;
-use super::canvas::{Anchor, Canvas, Frame, WIDE};
+use super::canvas::{Anchor, Canvas, Frame, WIDE, log_ticks};
 use crate::interval::clopper_pearson;
 use crate::report::ladder::Ladder;
 use crate::report::numbers::{percent, short};
@@ -14,8 +14,9 @@ pub fn ladder(ladder: &Ladder, level: f64) -> Option<Figure> {
     let (first, last) = (place(ladder.steps.first()?.seconds), place(ladder.steps.last()?.seconds));
     let margin = 0.08 * (last - first);
     let mut canvas = Canvas::new(WIDE, 340.0);
-    let titles = ["time on a picture, logarithm to the base 10 of seconds", "told the lower quality"];
-    let frame = Frame::draw(&mut canvas, [first - margin, last + margin], [0.0, 1.0], titles, [false, true]);
+    let titles = ["seconds spent on a picture", "told the lower quality"];
+    let range = [first - margin, last + margin];
+    let frame = Frame::with_ticks(&mut canvas, [range, [0.0, 1.0]], titles, log_ticks(range), true);
     canvas.line("half", frame.point(first - margin, 0.5), frame.point(last + margin, 0.5));
     let [low, high] = fit.threshold_interval.map(|x| frame.x.at(-x));
     canvas.rect("band", [high.min(low), 28.0], [(high - low).abs(), frame.y.at(0.0) - 28.0]);
@@ -33,8 +34,8 @@ pub fn ladder(ladder: &Ladder, level: f64) -> Option<Figure> {
         let [low, high] = clopper_pearson(step.counts, level);
         canvas.line("mark", frame.point(x, low), frame.point(x, high));
         canvas.dot("mark", frame.point(x, share), 5.0);
-        let [at, y] = frame.point(x, high);
-        canvas.text("tick", [at, y - 6.0], Anchor::Middle, &step.quality);
+        let [at, y] = frame.point(x, low);
+        canvas.text("tick", [at, y + 16.0], Anchor::Middle, &step.quality);
         said.push(format!("{} at {} s: {}", step.quality, short(step.seconds), percent(share)));
     }
     Some(Figure {

@@ -80,8 +80,8 @@ pub fn bayes(factors: &BayesFactors, most: f64) -> String {
         _ => {
             let values: Vec<String> = all.iter().map(|factor| factor_value(factor.bf01, factor.log10_bf01)).collect();
             format!(
-                "The factors for guessing against {priors}: {}, {} and {}. The priors disagree on the direction, so the \
-                 factor decides nothing. {cap}",
+                "In favour of guessing the Bayes factors are {}, {} and {} {priors}. The priors disagree on the direction, \
+                 so the factor decides nothing. {cap}",
                 values[0], values[1], values[2]
             )
         }
@@ -287,10 +287,11 @@ mod tests {
             "The data are 3855, 7710 and 9172 times less likely if everybody guesses than under the uniform \
              prior, the one on 50 % to 100 %, and Jeffreys'."
         );
-        assert!(
-            say(11, 16).contains("The priors disagree on the direction, so the factor decides nothing."),
-            "{}",
-            say(11, 16)
+        assert_eq!(
+            say(11, 16),
+            "In favour of guessing the Bayes factors are 1.13, 0.61 and 1.61 under the uniform prior, the one on 50 % to \
+             100 %, and Jeffreys'. The priors disagree on the direction, so the factor decides nothing. With this many people \
+             the first cannot exceed 3.34 in favour of guessing."
         );
         assert!(say(1_000_000, 1_000_000).contains("10^301024.0"), "{}", say(1_000_000, 1_000_000));
         let bound = Bound::from_proportion(0.25).unwrap();
