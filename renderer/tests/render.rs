@@ -233,7 +233,7 @@ fn layers_add_up_to_the_beauty_and_what_nothing_reached_is_absent() {
 fn smoothed_planes_are_less_noisy_and_the_others_stay() {
     let folder = Folder::new();
     let made = |more: &[&str]| {
-        folder.stats("(TRSGMD)*", &[&["--spp", "4", "-lr", "4", "-x", "64", "-y", "48"], more].concat());
+        folder.stats("(TRSGM)D", &[&["--spp", "16", "-x", "64", "-y", "48"], more].concat());
         picture::read(&folder.path("a.exr")).unwrap()
     };
     let plain = made(&[]);
@@ -248,7 +248,8 @@ fn smoothed_planes_are_less_noisy_and_the_others_stay() {
         let mean = |pixels: &Raster<[f32; 3]>| pixels.values().iter().map(|pixel| f64::from(pixel[1])).sum::<f64>();
         if layer.name == "D" {
             assert!(apart(&other.pixels) < 0.2 * apart(&layer.pixels));
-            assert!((mean(&other.pixels) / mean(&layer.pixels) - 1.0).abs() < 0.02);
+            // The noise of a pixel is some 94 % of the plane's mean, that of the mean of 3072 pixels 1.7 %: three of those.
+            assert!((mean(&other.pixels) / mean(&layer.pixels) - 1.0).abs() < 0.05);
         } else {
             // Sums over the halves instead of the whole may round differently.
             for (a, b) in layer.pixels.values().iter().flatten().zip(other.pixels.values().iter().flatten()) {

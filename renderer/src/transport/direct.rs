@@ -64,8 +64,11 @@ impl Lit<'_> {
     pub(super) fn light(&self, response: &Response, sampler: &Sampler, tests: usize, scratch: &mut Scratch) -> Rgb {
         let mut proposals = std::mem::take(&mut scratch.proposals);
         proposals.clear();
+        // Where few of many lights are tested, it does no harm that their points have the same place on each.
+        let one = 4 * tests <= self.scene.lights.len();
+        let shared = if one { sampler.pair(dimension::LIGHT) } else { [0.0; 2] };
         for (light, number) in self.scene.lights.iter().zip(0_u32..) {
-            let u = sampler.pair(dimension::LIGHT + number);
+            let u = if one { shared } else { sampler.pair(dimension::LIGHT + number) };
             let Some(sample) = light.sample(self.start.origin, u) else { continue };
             let unshadowed = response.direct(sample.dir, sample.solid_angle) * sample.radiance;
             if unshadowed != Rgb::ZERO {

@@ -71,12 +71,24 @@ impl Triangle {
     }
 
     pub(super) fn meet(&self, probe: &Probe, t_min: f64, t_max: f64) -> Option<f64> {
-        let [(a, za), (b, zb), (c, zc)] = self.corners.map(|corner| probe.project(corner));
-        if !(crosses(a, b) ^ crosses(b, c) ^ crosses(c, a)) {
+        let inside = match probe.axis() {
+            0 => self.is_met::<0>(probe),
+            1 => self.is_met::<1>(probe),
+            _ => self.is_met::<2>(probe),
+        };
+        if !inside {
             return None;
         }
-        let (nearest, furthest) = (za.min(zb).min(zc), za.max(zb).max(zc));
+        let [a, b, c] = self.corners.map(|corner| probe.depth(corner));
+        let (nearest, furthest) = (a.min(b).min(c), a.max(b).max(c));
         within(plane_distance(probe, self.corners[0], self.doubled_area_vector(), nearest, furthest), t_min, t_max)
+    }
+
+    /// Whether the ray's line, whose axis is `AXIS`, passes through.
+    #[inline]
+    fn is_met<const AXIS: usize>(&self, probe: &Probe) -> bool {
+        let [a, b, c] = self.corners.map(|corner| probe.across::<AXIS>(corner));
+        crosses(a, b) ^ crosses(b, c) ^ crosses(c, a)
     }
 
     pub(super) fn settle(&self, point: DVec3) -> (DVec3, DVec3) {
@@ -130,20 +142,34 @@ impl Polygon {
     }
 
     pub(super) fn meet(&self, probe: &Probe, t_min: f64, t_max: f64) -> Option<f64> {
-        let (mut from, depth) = probe.project(self.vertices[self.vertices.len() - 1]);
-        let (mut nearest, mut furthest) = (depth, depth);
-        let mut inside = false;
-        for &vertex in &*self.vertices {
-            let (to, depth) = probe.project(vertex);
-            inside ^= crosses(from, to);
-            nearest = nearest.min(depth);
-            furthest = furthest.max(depth);
-            from = to;
-        }
+        let inside = match probe.axis() {
+            0 => self.is_met::<0>(probe),
+            1 => self.is_met::<1>(probe),
+            _ => self.is_met::<2>(probe),
+        };
         if !inside {
             return None;
         }
+        let (mut nearest, mut furthest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &vertex in &*self.vertices {
+            let depth = probe.depth(vertex);
+            nearest = nearest.min(depth);
+            furthest = furthest.max(depth);
+        }
         within(plane_distance(probe, self.point, self.normal, nearest, furthest), t_min, t_max)
+    }
+
+    /// Whether the ray's line, whose axis is `AXIS`, passes through.
+    #[inline]
+    fn is_met<const AXIS: usize>(&self, probe: &Probe) -> bool {
+        let mut from = probe.across::<AXIS>(self.vertices[self.vertices.len() - 1]);
+        let mut inside = false;
+        for &vertex in &*self.vertices {
+            let to = probe.across::<AXIS>(vertex);
+            inside ^= crosses(from, to);
+            from = to;
+        }
+        inside
     }
 
     pub(super) fn settle(&self, point: DVec3) -> (DVec3, DVec3) {

@@ -34,14 +34,28 @@ impl Probe {
         Self { origin, dir, axes, shear, inverse_depth }
     }
 
-    /// A point as the ray sees it: the two coordinates across (the ray passes through zero) and the depth, which for a
-    /// point on the ray is its distance.
+    /// The axis along which the ray travels furthest: 0, 1 or 2.
     #[inline]
     #[must_use]
-    pub fn project(&self, point: DVec3) -> (DVec2, f64) {
-        let from_origin = point - self.origin;
-        let along = from_origin[self.axes[2]];
-        let across = DVec2::new(from_origin[self.axes[0]], from_origin[self.axes[1]]) - self.shear * along;
-        (across, along * self.inverse_depth)
+    pub fn axis(&self) -> usize {
+        self.axes[2]
+    }
+
+    /// A point as the ray sees it: its two coordinates across, the ray passing through zero. `AXIS` is the ray's
+    /// [`Self::axis`].
+    #[inline]
+    #[must_use]
+    pub(super) fn across<const AXIS: usize>(&self, point: DVec3) -> DVec2 {
+        let from_origin = (point - self.origin).to_array();
+        let across = DVec2::new(from_origin[(AXIS + 1) % 3], from_origin[(AXIS + 2) % 3]);
+        across - self.shear * from_origin[AXIS]
+    }
+
+    /// A point's depth as the ray sees it: for a point on the ray, its distance.
+    #[inline]
+    #[must_use]
+    pub(super) fn depth(&self, point: DVec3) -> f64 {
+        let axis = self.axes[2];
+        (point[axis] - self.origin[axis]) * self.inverse_depth
     }
 }
