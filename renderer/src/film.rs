@@ -52,14 +52,34 @@ impl Planes {
         reset(&mut self.ambient, ambient);
     }
 
-    /// Adds radiance at a pixel.
-    pub fn add(&mut self, pixel: u32, plane: Plane, radiance: Rgb) {
-        let plane = match plane {
+    /// Makes all planes black, with room for what another has room for.
+    pub fn clear_like(&mut self, other: &Self) {
+        let components = Component::ALL.into_iter().filter(|&component| !other.layers[component].is_empty());
+        self.clear(other.pixels, components.collect(), !other.ambient.is_empty());
+    }
+
+    /// A plane's sums, pixel by pixel; nothing if there is no such plane.
+    #[must_use]
+    pub fn sums(&self, plane: Plane) -> &[Rgb] {
+        match plane {
+            Plane::Direct => &self.direct,
+            Plane::Layer(component) => &self.layers[component],
+            Plane::Ambient => &self.ambient,
+        }
+    }
+
+    /// The same, to change.
+    pub fn sums_mut(&mut self, plane: Plane) -> &mut [Rgb] {
+        match plane {
             Plane::Direct => &mut self.direct,
             Plane::Layer(component) => &mut self.layers[component],
             Plane::Ambient => &mut self.ambient,
-        };
-        plane[pixel as usize] += radiance;
+        }
+    }
+
+    /// Adds radiance at a pixel.
+    pub fn add(&mut self, pixel: u32, plane: Plane, radiance: Rgb) {
+        self.sums_mut(plane)[pixel as usize] += radiance;
     }
 
     /// Adds the sums of another set of planes, pixel by pixel; both must have been cleared alike.
@@ -112,6 +132,19 @@ impl Film {
             layers: PerComponent::from_fn(|component| components.contains(component).then(plane)),
             ambient: ambient.then(plane),
         }
+    }
+
+    /// A film of these planes; `None` if their sizes differ.
+    #[must_use]
+    pub fn from_planes(
+        direct: Raster<Vec3>,
+        layers: PerComponent<Option<Raster<Vec3>>>,
+        ambient: Option<Raster<Vec3>>,
+    ) -> Option<Self> {
+        let size = (direct.width(), direct.height());
+        let planes = layers.iter().filter_map(|(_, layer)| layer.as_ref()).chain(&ambient);
+        let same = planes.map(|plane| (plane.width(), plane.height())).all(|other| other == size);
+        same.then_some(Self { direct, layers, ambient })
     }
 
     /// Pixels in a row.

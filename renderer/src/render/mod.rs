@@ -6,6 +6,7 @@ mod pieces;
 mod settings;
 mod stages;
 mod tiles;
+mod timed;
 
 use crate::crex::Program;
 use crate::geometry::Aggregate;
@@ -17,6 +18,7 @@ use crate::transport::Rule;
 pub use filtered::SmoothedPlane;
 pub use outcome::{Rendering, Snapshot};
 pub use settings::{RenderError, Settings};
+pub use timed::{RoundRecord, TimedRecord, TimedRendering};
 
 /// A scene ready to be rendered.
 pub struct Renderer<'a> {

@@ -1,6 +1,6 @@
 //! What was rendered, and how the work of parcels and tiles adds up.
 
-use crate::component::PerComponent;
+use crate::component::{ComponentSet, PerComponent};
 use crate::crex::Span;
 use crate::film::Film;
 use crate::schedule::{StageRow, merge_rows};
@@ -34,7 +34,7 @@ pub struct Snapshot<'a> {
 }
 
 /// What a parcel, a tile or a picture did.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Outcome {
     pub(super) primary: WorkReport,
     pub(super) rows: Vec<StageRow>,
@@ -73,10 +73,14 @@ pub(super) fn occupancy(parcels: &[Parcel]) -> PerComponent<u64> {
     sum
 }
 
+/// The components of which rays were traced.
+pub(super) fn reached(rows: &[StageRow]) -> ComponentSet {
+    rows.iter().filter(|row| row.report.rays > 0).map(|row| row.stage.component).collect()
+}
+
 pub(super) fn finish(mut film: Film, outcome: Outcome) -> Rendering {
     let Outcome { primary, rows: stages, left, mut stopped } = outcome;
-    let reached = stages.iter().filter(|row| row.report.rays > 0).map(|row| row.stage.component).collect();
-    film.keep(reached);
+    film.keep(reached(&stages));
     stopped.sort_by_key(|span| (span.start, span.end));
     Rendering { film, primary, stages, left, stopped }
 }

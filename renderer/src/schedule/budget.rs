@@ -19,6 +19,12 @@ impl<'c> Budget<'c> {
         Self { clock, deadline_s, reserve_s }
     }
 
+    /// The same with so many seconds more to be kept.
+    #[must_use]
+    pub fn with_more_reserve(self, seconds: f64) -> Self {
+        Self { reserve_s: self.reserve_s + seconds, ..self }
+    }
+
     /// Seconds now, by the budget's clock.
     #[must_use]
     pub fn now_s(&self) -> f64 {

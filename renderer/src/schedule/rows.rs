@@ -46,6 +46,9 @@ pub fn merge_rows(tiles: impl IntoIterator<Item = Vec<StageRow>>) -> Vec<StageRo
                 merged.insert(row.stage.key.clone(), row);
             }
             Some(sum) => {
+                // Skipped only if it was skipped everywhere.
+                sum.skipped = sum.skipped.and(row.skipped);
+                sum.predicted_s = sum.predicted_s.zip(row.predicted_s).map(|(one, other)| one + other);
                 sum.report.rays += row.report.rays;
                 sum.report.seconds += row.report.seconds;
                 for (component, count) in sum.report.spawned.iter_mut() {

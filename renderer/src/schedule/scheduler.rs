@@ -3,7 +3,7 @@
 use crate::crex::{Cursor, Program, Span, ThresholdError};
 use crate::work::{BinOccupancy, Stage, Work, WorkReport};
 
-use super::rows::StageRow;
+use super::rows::{Skipped, StageRow};
 
 /// Decides what the tracer does next over one set of bins, and keeps a row of every stage that ran.
 ///
@@ -15,6 +15,8 @@ pub struct Scheduler<'p> {
     /// The stage handed out and not yet reported.
     running: Option<Stage>,
     rows: Vec<StageRow>,
+    /// Which stages run; none is all. From the record of a run under a time limit.
+    ran: Option<&'p [bool]>,
 }
 
 impl<'p> Scheduler<'p> {
@@ -28,18 +30,31 @@ impl<'p> Scheduler<'p> {
         if let Some(thresholds) = thresholds {
             cursor = cursor.with_thresholds(thresholds)?;
         }
-        Ok(Self { cursor, running: None, rows: Vec::new() })
+        Ok(Self { cursor, running: None, rows: Vec::new(), ran: None })
+    }
+
+    /// The same walk with a decision for every stage in the order in which they come: whether it runs or is skipped as if
+    /// for time. Stages beyond the last decision are skipped.
+    #[must_use]
+    pub fn with_decisions(self, ran: &'p [bool]) -> Self {
+        Self { ran: Some(ran), ..self }
     }
 
     /// What to do next; none when the crex has ended. Components whose bins are empty run too: tracing nothing is a
     /// stage. Without a time limit the `occupancy` decides nothing.
     #[allow(clippy::should_implement_trait, reason = "an iterator would hide that reports must come in between")]
     pub fn next(&mut self, _occupancy: &BinOccupancy) -> Option<Work> {
-        let work = self.cursor.next()?;
-        if let Work::Run(stage) = &work {
-            self.running = Some(stage.clone());
+        loop {
+            let work = self.cursor.next()?;
+            let Work::Run(stage) = &work else { return Some(work) };
+            if self.ran.is_none_or(|ran| ran.get(self.rows.len()).copied().unwrap_or(false)) {
+                self.running = Some(stage.clone());
+                return Some(work);
+            }
+            self.cursor.report(0);
+            let (report, skipped) = (WorkReport::default(), Some(Skipped::Time));
+            self.rows.push(StageRow { stage: stage.clone(), report, predicted_s: None, skipped });
         }
-        Some(work)
     }
 
     /// What the last [`Work::Run`] did.

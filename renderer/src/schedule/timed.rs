@@ -77,6 +77,10 @@ pub struct TimedScheduler<'a> {
     budget: Budget<'a>,
     profile: &'a mut ProfileCache,
     rows: Vec<StageRow>,
+    /// Where the rows of the task begin that is under way.
+    task_rows: usize,
+    /// What the time left was when it was decided on, and what it was not to exceed.
+    margin_s: (f64, f64),
     phase: Phase,
     /// What the task was predicted to take from when it was decided on, if it could be.
     prediction: Option<Prediction>,
@@ -88,6 +92,8 @@ pub struct TimedScheduler<'a> {
     probed_s: f64,
     /// What was handed out and when, not yet reported.
     pending: Option<(Pending, f64)>,
+    /// A task was cut off: all that comes is skipped.
+    over: bool,
 }
 
 impl<'a> TimedScheduler<'a> {
@@ -111,12 +117,15 @@ impl<'a> TimedScheduler<'a> {
             budget,
             profile,
             rows: Vec::new(),
+            task_rows: 0,
+            margin_s: (0.0, 0.0),
             phase: Phase::Under { runs: true },
             prediction: None,
             taken_s: 0.0,
             probes: PerComponent::default(),
             probed_s: 0.0,
             pending: None,
+            over: false,
         })
     }
 
@@ -135,6 +144,7 @@ impl<'a> TimedScheduler<'a> {
                     return Some(probe);
                 }
                 let runs = self.decide(&task, &bins);
+                self.task_rows = self.rows.len();
                 self.phase = Phase::Decided { runs };
                 if !runs && self.probes.iter().any(|(_, (times, _))| *times > 0) {
                     return Some(TimedWork::Discard);
@@ -191,6 +201,55 @@ impl<'a> TimedScheduler<'a> {
         }
     }
 
+    /// Whether the stage just handed out is the first of its task: from here on all must be undone if the task is cut off.
+    #[must_use]
+    pub fn begins_task(&self) -> bool {
+        self.rows.len() == self.task_rows
+    }
+
+    /// The part of the time left that the task under way was predicted not to exceed; 1 is all of it.
+    #[must_use]
+    pub fn risk(&self) -> f64 {
+        let (bound_s, left_s) = self.margin_s;
+        if bound_s > 0.0 { bound_s / left_s.max(f64::MIN_POSITIVE) } else { 0.0 }
+    }
+
+    /// What the task under way was predicted to take.
+    #[must_use]
+    pub fn predicted(&self) -> Prediction {
+        self.prediction.unwrap_or_default()
+    }
+
+    /// In place of [`report`](Self::report): the task was cut off since it overran the time, and all that it did has been
+    /// undone. All that comes after it is skipped. `part` is what the last stage did until then; it teaches the profile, and a task cut off counts as one that
+    /// took at least as long as the time it was given.
+    pub fn cut_off(&mut self, part: &WorkReport) {
+        let Some((pending, since_s)) = self.pending.take() else {
+            return;
+        };
+        let seconds = self.budget.now_s() - since_s;
+        let Pending::Run(stage) = pending else {
+            return;
+        };
+        self.learn(stage.component, &WorkReport { seconds, ..*part });
+        self.taken_s += seconds;
+        if let Some(prediction) = self.prediction
+            && prediction.mean_s > 0.0
+        {
+            self.profile.record(&prediction, self.taken_s.max(prediction.mean_s));
+        }
+        for row in &mut self.rows[self.task_rows..] {
+            row.report = WorkReport::default();
+            row.skipped = Some(Skipped::Time);
+        }
+        let predicted_s = self.prediction.map(|prediction| prediction.mean_s + self.probed_s);
+        let skipped = Some(Skipped::Time);
+        self.rows.push(StageRow { stage, report: WorkReport::default(), predicted_s, skipped });
+        self.cursor.report(0);
+        self.phase = Phase::Under { runs: false };
+        self.over = true;
+    }
+
     /// As [`Scheduler::stopped`](super::Scheduler::stopped).
     #[must_use]
     pub fn stopped(&self) -> &[Span] {
@@ -209,6 +268,9 @@ impl<'a> TimedScheduler<'a> {
 
     /// A probe that the task needs before it can be predicted.
     fn probe(&mut self, task: &Task, bins: &BinOccupancy) -> Option<TimedWork> {
+        if self.over {
+            return None;
+        }
         let left_s = self.budget.left_s();
         let component = task.components.iter().find(|&component| {
             let (times, _) = self.probes[component];
@@ -234,7 +296,9 @@ impl<'a> TimedScheduler<'a> {
         self.prediction = whole;
         let nothing_to_do = task.components.iter().all(|component| bins[component] == 0);
         let left_s = self.budget.left_s();
-        nothing_to_do || whole.is_some_and(|whole| self.profile.bound_s(&whole) <= left_s)
+        let bound_s = whole.map_or(f64::INFINITY, |whole| self.profile.bound_s(&whole));
+        self.margin_s = (bound_s, left_s);
+        !self.over && (nothing_to_do || bound_s <= left_s)
     }
 
     /// Learns how far the last task's prediction was off, and makes room for the next task.

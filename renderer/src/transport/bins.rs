@@ -125,6 +125,18 @@ impl RayBins {
         })
     }
 
+    /// The components that have a bin.
+    #[must_use]
+    pub fn stored(&self) -> ComponentSet {
+        self.stored
+    }
+
+    /// The visible records of a component's bin.
+    #[must_use]
+    pub fn visible(&self, component: Component) -> &[SpawnRecord] {
+        &self.bins[component].visible
+    }
+
     /// The records that wait in a component's bin, held ones included.
     pub fn waiting(&self, component: Component) -> impl Iterator<Item = &SpawnRecord> {
         let bin = &self.bins[component];

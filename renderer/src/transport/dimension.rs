@@ -6,6 +6,9 @@ pub(super) const PIXEL: u32 = 0;
 /// The direction of a spawned ray; trial number i, after directions below the surface, takes the i-th from here.
 pub(super) const DIRECTION: u32 = 1;
 
+/// Whether a spawn is among those that are traced to learn what its kind costs.
+pub(super) const PROBE: u32 = 31;
+
 /// Russian roulette for the lobe of each step of a path (`PathKey::then`).
 pub(super) const ROULETTE: u32 = 32;
 

@@ -8,6 +8,7 @@ mod bins;
 mod dimension;
 mod direct;
 mod first_hits;
+mod lattice;
 mod modulation;
 mod parcel;
 mod ray;
@@ -15,6 +16,7 @@ mod spawn;
 mod trace;
 
 pub use bins::{RayBins, SpawnRecord};
+pub use lattice::{RANKS, rank};
 pub use modulation::{Choice, Modulation, Rule};
 pub use parcel::{Parcel, Samples, Workspace};
 pub use ray::{PathRay, RayPath, transmittance};

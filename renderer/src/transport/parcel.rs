@@ -10,9 +10,10 @@ use crate::sample::{PathKey, Sampler};
 use crate::scene::View;
 use crate::work::{BinOccupancy, Stage, WorkReport};
 
-use super::bins::RayBins;
+use super::bins::{RayBins, SpawnRecord};
 use super::dimension;
 use super::direct::Scratch;
+use super::lattice::rank;
 use super::modulation::{Choice, Rule};
 use super::ray::{PathRay, RayPath};
 use super::spawn::Spawner;
@@ -29,6 +30,8 @@ pub struct Samples<'a> {
     pub height: usize,
     /// `-pj`: how much of a pixel's extent its samples cover, in [0, 1]; 1 is a box filter, 0 samples the centre.
     pub jitter: f64,
+    /// Only pixels of these ranks ([`rank`]) are sampled; all of them from 0 to [`RANKS`](super::RANKS).
+    pub ranks: (u16, u16),
 }
 
 /// Pixels and samples with the rays that they have brought forth so far.
@@ -75,6 +78,9 @@ impl Parcel {
         let mut spawner = spawner(tracer, &mut self.bins, &mut self.planes, false);
         for pixel in 0..self.block.pixels() {
             let (x, y) = place(&self.block, pixel);
+            if !(samples.ranks.0..samples.ranks.1).contains(&rank(x, y)) {
+                continue;
+            }
             let share = tracer.modulation.and_then(|modulation| modulation.share(x, y, name(x, y), tracer.seed));
             for sample in self.numbers.clone() {
                 let sampler = Sampler::new(tracer.seed, name(x, y), PathKey::EYE, sample);
@@ -105,16 +111,11 @@ impl Parcel {
         let glossy = tracer.limits.glossy_sampling();
         for mut record in records.drain(..) {
             let (x, y) = place(&self.block, record.path.pixel as usize);
-            // Without a map every pixel counts as 1, and no threshold exceeds that.
-            if let (Some(threshold), Some(modulation)) = (stage.threshold, tracer.modulation) {
-                let reached = match modulation.rule {
-                    Rule::Thresholds => *modulation.map.at(x, y) >= threshold,
-                    Rule::Continuous { .. } => *modulation.map.at(x, y) > 0.0,
-                };
-                if !reached {
-                    self.bins.push(stage.component, record, false);
-                    continue;
-                }
+            if !reaches(tracer, &self.block, &record, stage.threshold) {
+                self.bins.push(stage.component, record, false);
+                continue;
+            }
+            if let (Some(_), Some(modulation)) = (stage.threshold, tracer.modulation) {
                 match (modulation.share(x, y, name(x, y), tracer.seed), record.path.choice) {
                     (Some(_), Choice::PassedOver) => continue,
                     (Some(share), Choice::Chosen) => {
@@ -144,9 +145,51 @@ impl Parcel {
         WorkReport { rays, spawned, seconds: 0.0 }
     }
 
+    /// Number of its pixels.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.block.pixels()
+    }
+
     /// Makes all held rays visible.
     pub fn release(&mut self) {
         self.bins.release();
+    }
+
+    /// Rays that a stage with a threshold would trace now, by component.
+    #[must_use]
+    pub fn admitted(&self, tracer: &Tracer<'_>, threshold: Option<f32>) -> BinOccupancy {
+        if threshold.is_none() || tracer.modulation.is_none() {
+            return self.occupancy();
+        }
+        PerComponent::from_fn(|component| {
+            let records = self.bins.visible(component).iter();
+            let admitted = records.filter(|record| traces(tracer, &self.block, record, threshold));
+            admitted.map(|record| u64::from(record.count)).sum()
+        })
+    }
+
+    /// A parcel of copies of visible records of a component, as if drawn at random from those that a stage with a
+    /// threshold would trace: those whose number in [0, 1), which depends on nothing but their path, lies in `share`.
+    #[must_use]
+    pub fn copy_of(
+        &self,
+        tracer: &Tracer<'_>,
+        component: Component,
+        share: &Range<f64>,
+        threshold: Option<f32>,
+    ) -> Self {
+        let mut part = Self { block: self.block, numbers: 0..0, bins: RayBins::default(), planes: Planes::default() };
+        part.bins.clear(self.bins.stored());
+        part.planes.clear_like(&self.planes);
+        for record in self.bins.visible(component) {
+            let (x, y) = place(&self.block, record.path.pixel as usize);
+            let sampler = Sampler::new(0, name(x, y), record.path.key, record.path.sample);
+            if share.contains(&sampler.pair(dimension::PROBE)[0]) && traces(tracer, &self.block, record, threshold) {
+                part.bins.push(component, *record, false);
+            }
+        }
+        part
     }
 
     /// Rays now visible, by component.
@@ -177,6 +220,23 @@ impl Parcel {
 fn spawner<'a>(tracer: &'a Tracer<'_>, bins: &'a mut RayBins, planes: &'a mut Planes, held: bool) -> Spawner<'a> {
     let (limits, ambient) = (&tracer.limits, tracer.ambient);
     Spawner { limits, ambient, bins, planes, held, spawned: PerComponent::default() }
+}
+
+/// Whether a record's pixel is important enough to leave the bin.
+fn reaches(tracer: &Tracer<'_>, block: &Block, record: &SpawnRecord, threshold: Option<f32>) -> bool {
+    // Without a map every pixel counts as 1, and no threshold exceeds that.
+    let (Some(threshold), Some(modulation)) = (threshold, tracer.modulation) else { return true };
+    let (x, y) = place(block, record.path.pixel as usize);
+    match modulation.rule {
+        Rule::Thresholds => *modulation.map.at(x, y) >= threshold,
+        Rule::Continuous { .. } => *modulation.map.at(x, y) > 0.0,
+    }
+}
+
+/// Whether a record's rays would be traced, and not stay or be passed over.
+fn traces(tracer: &Tracer<'_>, block: &Block, record: &SpawnRecord, threshold: Option<f32>) -> bool {
+    let passed_over = threshold.is_some() && record.path.choice == Choice::PassedOver;
+    reaches(tracer, block, record, threshold) && !passed_over
 }
 
 /// Column and row in the picture of a block's pixel.
