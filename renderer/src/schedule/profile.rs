@@ -1,6 +1,8 @@
 //! The profile cache of the paper's section 5.1: what rays of each kind cost on one scene and machine, and how far
 //! predictions from it have been off.
 
+use std::collections::BTreeMap;
+
 use crate::component::PerComponent;
 
 use super::calibration::Calibration;
@@ -45,6 +47,9 @@ pub struct ProfileCache {
     /// What of it was learnt since the cache was read or stored: another run may store in the meantime.
     fresh: [Cost; 7],
     fresh_errors: Vec<f64>,
+    /// What writing pictures has cost, by the name of the format; its "rays" are bytes.
+    writers: BTreeMap<String, Cost>,
+    fresh_writers: BTreeMap<String, Cost>,
 }
 
 impl ProfileCache {
@@ -59,6 +64,8 @@ impl ProfileCache {
             calibration: Calibration::default(),
             fresh: [Cost::default(); 7],
             fresh_errors: Vec::new(),
+            writers: BTreeMap::new(),
+            fresh_writers: BTreeMap::new(),
         }
     }
 
@@ -92,6 +99,24 @@ impl ProfileCache {
         self.fresh[kind.index()].observe(rays, seconds, spawned);
     }
 
+    /// Takes in that a writer, named by its format, took `seconds` for so many bytes of pixels.
+    pub fn observe_writer(&mut self, name: &str, bytes: u64, seconds: f64) {
+        for writers in [&mut self.writers, &mut self.fresh_writers] {
+            writers.entry(name.to_owned()).or_default().observe(bytes, seconds, &PerComponent::default());
+        }
+    }
+
+    /// What a writer will take for so many bytes of pixels; none if nothing is known of it.
+    #[must_use]
+    pub fn predict_writer(&self, name: &str, bytes: u64) -> Option<Prediction> {
+        self.writers.get(name).filter(|cost| cost.rays() > 0).map(|cost| predict(cost, bytes))
+    }
+
+    /// What is known of writers, by the names of their formats; rays are bytes.
+    pub fn writers(&self) -> impl Iterator<Item = (&str, &Cost)> {
+        self.writers.iter().map(|(name, cost)| (name.as_str(), cost))
+    }
+
     /// What `rays` rays of a kind will take; none if nothing is known of that kind.
     ///
     /// The deviation is that between observations, shrunk towards [`PRIOR_SPREAD`], widened by the uncertainty of the mean
@@ -101,13 +126,7 @@ impl ProfileCache {
         if rays == 0 {
             return Some(Prediction::default());
         }
-        let cost = self.cost(kind)?;
-        let observations = cost.effective_observations();
-        let prior = (PRIOR_SPREAD * cost.mean_s()).powi(2);
-        let variance =
-            (observations * cost.spread_s().powi(2) + PRIOR_OBSERVATIONS * prior) / (observations + PRIOR_OBSERVATIONS);
-        let of_rays = rays as f64 * (variance * (1.0 + 1.0 / observations)).sqrt();
-        Some(Prediction { mean_s: rays as f64 * cost.mean_s(), deviation_s: of_rays.hypot(JITTER_S) })
+        self.cost(kind).map(|cost| predict(cost, rays))
     }
 
     /// The seconds that a predicted task will not exceed with the confidence of
@@ -128,6 +147,11 @@ impl ProfileCache {
 
     /// Takes in what another cache of the same scene and machine learnt since it was read.
     pub(super) fn add_fresh(&mut self, other: &Self) {
+        for (name, fresh) in &other.fresh_writers {
+            for writers in [&mut self.writers, &mut self.fresh_writers] {
+                writers.entry(name.clone()).or_default().add(fresh);
+            }
+        }
         for (kind, fresh) in other.fresh.iter().enumerate() {
             self.known[kind].add(fresh);
             self.fresh[kind].add(fresh);
@@ -143,6 +167,11 @@ impl ProfileCache {
         self.known[kind.index()] = cost;
     }
 
+    /// Sets what is known of a writer, as it was stored.
+    pub(super) fn restore_writer(&mut self, name: String, cost: Cost) {
+        self.writers.insert(name, cost);
+    }
+
     /// Sets how far predictions have been off, as it was stored; the oldest first.
     pub(super) fn restore_errors(&mut self, errors: impl IntoIterator<Item = f64>) {
         errors.into_iter().for_each(|error| self.calibration.record(error));
@@ -152,5 +181,16 @@ impl ProfileCache {
     pub(super) fn stored(&mut self) {
         self.fresh = [Cost::default(); 7];
         self.fresh_errors.clear();
+        self.fresh_writers.clear();
     }
+}
+
+/// What so many units (rays, bytes) of known cost will take.
+fn predict(cost: &Cost, units: u64) -> Prediction {
+    let observations = cost.effective_observations();
+    let prior = (PRIOR_SPREAD * cost.mean_s()).powi(2);
+    let variance =
+        (observations * cost.spread_s().powi(2) + PRIOR_OBSERVATIONS * prior) / (observations + PRIOR_OBSERVATIONS);
+    let of_units = units as f64 * (variance * (1.0 + 1.0 / observations)).sqrt();
+    Prediction { mean_s: units as f64 * cost.mean_s(), deviation_s: of_units.hypot(JITTER_S) }
 }

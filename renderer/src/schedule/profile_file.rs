@@ -10,11 +10,13 @@
 //!                 "spawned": {"D": 921600, "T": 30720}},
 //!     "D": ...
 //!   },
+//!   "writers": {"zip": {"rays": 103680000, ...}},
 //!   "errors": [-0.4, 1.2]
 //! }
 //! ```
 //! `mean_s` and `spread_s` are seconds a ray, `effective` the number of equal observations that would say as much,
-//! `errors` those of past predictions in deviations, the oldest first. Kinds never observed are absent.
+//! `errors` those of past predictions in deviations, the oldest first. `writers` is the cost of writing pictures, by format
+//! or EXR's compression, of which bytes are counted in place of rays. Kinds never observed are absent.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -87,6 +89,8 @@ struct Stored {
     scene: String,
     machine: String,
     rays: BTreeMap<String, StoredCost>,
+    #[serde(default)]
+    writers: BTreeMap<String, StoredCost>,
     errors: Vec<f64>,
 }
 
@@ -174,25 +178,25 @@ fn to_json(cache: &ProfileCache) -> String {
         format: FORMAT.to_owned(),
         scene: cache.scene().to_owned(),
         machine: cache.machine().to_owned(),
-        rays: costs
-            .map(|(kind, cost)| {
-                let spawned = cost.spawned().iter().filter(|(_, count)| **count > 0);
-                let stored = StoredCost {
-                    rays: cost.rays(),
-                    observations: cost.observations(),
-                    effective: cost.effective_observations(),
-                    mean_s: cost.mean_s(),
-                    spread_s: cost.spread_s(),
-                    spawned: spawned.map(|(component, count)| (component.letter(), *count)).collect(),
-                };
-                (name(kind), stored)
-            })
-            .collect(),
+        rays: costs.map(|(kind, cost)| (name(kind), stored_cost(cost))).collect(),
+        writers: cache.writers().map(|(name, cost)| (name.to_owned(), stored_cost(cost))).collect(),
         errors: cache.calibration().errors().collect(),
     };
     let mut text = serde_json::to_string_pretty(&stored).expect("text keys and finite numbers are JSON");
     text.push('\n');
     text
+}
+
+fn stored_cost(cost: &Cost) -> StoredCost {
+    let spawned = cost.spawned().iter().filter(|(_, count)| **count > 0);
+    StoredCost {
+        rays: cost.rays(),
+        observations: cost.observations(),
+        effective: cost.effective_observations(),
+        mean_s: cost.mean_s(),
+        spread_s: cost.spread_s(),
+        spawned: spawned.map(|(component, count)| (component.letter(), *count)).collect(),
+    }
 }
 
 fn from_json(text: &str, path: &Path, scene: &str, machine: &str) -> Result<ProfileCache, ProfileError> {
@@ -229,6 +233,13 @@ fn from_json(text: &str, path: &Path, scene: &str, machine: &str) -> Result<Prof
         let cost = Cost::from_parts(cost.rays, cost.observations, cost.mean_s, cost.spread_s, cost.effective, spawned);
         let cost = cost.ok_or_else(|| refuse("expected rays, observations and seconds of at least 0"))?;
         cache.restore(kind, cost);
+    }
+    for (key, cost) in stored.writers {
+        let none = PerComponent::default();
+        let cost = Cost::from_parts(cost.rays, cost.observations, cost.mean_s, cost.spread_s, cost.effective, none);
+        let line = text.lines().position(|line| line.contains(&format!("\"{key}\""))).unwrap_or(0) + 1;
+        let message = "expected bytes, observations and seconds of at least 0".to_owned();
+        cache.restore_writer(key, cost.ok_or_else(|| broken(line, 1, message))?);
     }
     let skip = stored.errors.len().saturating_sub(REMEMBERED);
     cache.restore_errors(stored.errors.into_iter().skip(skip));

@@ -13,6 +13,7 @@ mod snapshots;
 mod spellings;
 mod stats;
 mod stimuli;
+mod timed;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

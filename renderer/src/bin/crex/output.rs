@@ -47,10 +47,16 @@ impl Output {
         }
     }
 
-    /// Writes a film.
-    pub(crate) fn write(&self, film: &Film, exposure: f64, provenance: &Provenance) -> Result<(), Failure> {
+    /// Writes a film; an EXR is packed by `compression`.
+    pub(crate) fn write(
+        &self,
+        film: &Film,
+        exposure: f64,
+        provenance: &Provenance,
+        compression: Compression,
+    ) -> Result<(), Failure> {
         match self {
-            Self::File(path) => write_film(path, film, exposure, provenance).map_err(Failure::from),
+            Self::File(path) => pack_film(path, film, exposure, provenance, compression).map_err(Failure::from),
             Self::Stream => {
                 let header = header(film, exposure, provenance);
                 let stdout = BufWriter::new(std::io::stdout().lock());
@@ -73,13 +79,23 @@ pub(crate) fn check_folder(path: &Path) -> Result<(), Failure> {
 
 /// Writes a film in the format of the name; EXR has a layer for everything that was reached.
 pub(crate) fn write_film(path: &Path, film: &Film, exposure: f64, provenance: &Provenance) -> Result<(), Error> {
+    pack_film(path, film, exposure, provenance, Compression::Zip)
+}
+
+fn pack_film(
+    path: &Path,
+    film: &Film,
+    exposure: f64,
+    provenance: &Provenance,
+    compression: Compression,
+) -> Result<(), Error> {
     let mut header = header(film, exposure, provenance);
     let layers: Vec<(String, &Raster<Vec3>)> = match Format::of_name(path) {
         Some(Format::Exr) => layers(film),
         _ => Vec::new(),
     };
     header.layers = layers.iter().map(|(name, _)| name.clone()).collect();
-    header.compression = Compression::Zip;
+    header.compression = compression;
     let mut file = PictureFile::create(path, &header)?;
     for (rows, beauty) in bands(&film.beauty()) {
         let planes: Vec<Vec<Pixel>> = layers.iter().map(|(_, plane)| pixels(&plane.values()[rows.clone()])).collect();

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use renderer::component::Component;
+use renderer::component::{Component, ComponentSet};
 use renderer::crex::{self, Program, Setting};
 use renderer::film::Layers;
 use renderer::importance::map::ImportanceMap;
@@ -20,7 +20,7 @@ use crate::options::RadianceOptions;
 use crate::output::{self, Output};
 use crate::scene_files::{self, LoadedScene, SceneArgs};
 use crate::stats::Stats;
-use crate::{plan, snapshots};
+use crate::{plan, snapshots, timed};
 
 /// What `crex render` takes besides rpict's options.
 #[derive(clap::Args, Clone, Debug)]
@@ -74,6 +74,16 @@ pub(crate) struct Args {
     /// Also write what was traced, stage by stage, as JSON
     #[arg(long, value_name = "FILE")]
     stats: Option<PathBuf>,
+    /// Have everything done so many seconds after the program's start: tasks that are not predicted to fit are skipped,
+    /// and time that is left is spent on more samples
+    #[arg(long, value_name = "SECONDS", value_parser = timed::seconds, conflicts_with = "snapshots")]
+    time: Option<f64>,
+    /// What rays of this scene cost on this machine: read if it exists, and written with what was learnt
+    #[arg(long, value_name = "FILE", requires = "time")]
+    profile: Option<PathBuf>,
+    /// Render again, without a clock and to the same bits, what a run under --time wrote with --stats
+    #[arg(long, value_name = "STATS", conflicts_with_all = ["time", "snapshots"])]
+    replay: Option<PathBuf>,
 }
 
 /// `--layers`.
@@ -116,12 +126,30 @@ pub(crate) struct Prepared {
     /// The files that were read for the scene.
     pub(crate) files: Vec<PathBuf>,
     scene: Scene,
+    scene_inputs: Vec<Input>,
 }
 
 pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock) -> Result<(), Failure> {
     let outputs = outputs(args)?;
     let prepared = prepare(args, options)?;
     let request = &prepared.request;
+    if let Some(seconds) = args.time {
+        return run_timed(args, &prepared, &outputs, seconds, clock);
+    }
+    let mut timed = None;
+    if let Some(file) = &args.replay {
+        timed = timed::replay(file, &prepared, clock)?;
+    }
+    if let Some((timed, compression)) = timed {
+        for output in &outputs {
+            output.write(&timed.rendering.film, args.exposure, &request.provenance, compression)?;
+        }
+        write_beside(args, &prepared, &outputs, &timed.rendering)?;
+        let stats =
+            Stats::new(&request.program, &request.settings, &timed.rendering, timed::threads(&request.settings));
+        let record = timed::TimedStats::new(&timed, compression, 0.0);
+        return write_stats(args, &prepared, stats.with_time(None, record), clock);
+    }
     let rendering = match &args.snapshots {
         None => prepared.render(clock, None)?,
         Some(folder) => {
@@ -132,16 +160,48 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         }
     };
     for output in &outputs {
-        output.write(&rendering.film, args.exposure, &request.provenance)?;
+        output.write(&rendering.film, args.exposure, &request.provenance, Compression::Zip)?;
     }
+    write_beside(args, &prepared, &outputs, &rendering)?;
+    let stats = Stats::new(&request.program, &request.settings, &rendering, timed::threads(&request.settings));
+    write_stats(args, &prepared, stats, clock)
+}
+
+/// As [`run`], within a time limit.
+fn run_timed(
+    args: &Args,
+    prepared: &Prepared,
+    outputs: &[Output],
+    seconds: f64,
+    clock: &MonotonicClock,
+) -> Result<(), Failure> {
+    let request = &prepared.request;
+    let beside =
+        usize::from(args.stats.is_some()) + usize::from(args.ran.is_some()) + usize::from(args.parts.is_some());
+    let mut limit = timed::Limit::new(seconds, args.profile.as_deref(), beside, prepared, outputs)?;
+    let timed = limit.render(prepared, clock)?;
+    for output in outputs {
+        let begun_s = clock.now_s();
+        output.write(&timed.rendering.film, args.exposure, &request.provenance, limit.compression())?;
+        limit.wrote(output, prepared, clock.now_s() - begun_s);
+    }
+    write_beside(args, prepared, outputs, &timed.rendering)?;
+    limit.save()?;
+    let stats = Stats::new(&request.program, &request.settings, &timed.rendering, timed::threads(&request.settings));
+    write_stats(args, prepared, stats.with_time(Some(limit.seconds()), limit.stats(&timed)), clock)
+}
+
+/// Writes the pictures that are asked for beside the main ones.
+fn write_beside(args: &Args, prepared: &Prepared, outputs: &[Output], rendering: &Rendering) -> Result<(), Failure> {
+    let request = &prepared.request;
     if let Some(folder) = &args.parts {
         let extension = format_beside(outputs[0].path());
         output::write_parts(folder, extension, &rendering.film, args.exposure, &request.provenance)?;
     }
     if let Some(path) = &args.ran {
-        write_ran(path, request, &rendering)?;
+        write_ran(path, request, rendering)?;
     }
-    write_stats(args, request, &rendering, clock)
+    Ok(())
 }
 
 /// Reads and checks everything; warnings go to standard error.
@@ -152,48 +212,33 @@ pub(crate) fn prepare(args: &Args, options: &RadianceOptions) -> Result<Prepared
     let ast = plan::parse(&args.crex)?;
     let LoadedScene { mut scene, inputs, files } = scene_files::load(&args.scene.scenes, &args.scene.search)?;
     scene.set_relays(options.relays);
+    let scene_inputs = inputs.clone();
     let request = request(args, options, Program::new(&ast), inputs)?;
     let setting = Setting {
         components: Some(scene.components(options.glossy_threshold)),
         importance_map: Some(args.importance.is_some()),
-        time_limit: Some(false),
+        time_limit: Some(args.time.is_some()),
     };
     for warning in crex::warnings(&ast, &setting) {
         console::say("warning", &warning.render(&args.crex));
     }
-    Ok(Prepared { request, files, scene })
+    Ok(Prepared { request, files, scene, scene_inputs })
 }
 
 impl Prepared {
     /// Renders, with a bar on standard error; `show` gets the picture after every stage.
     pub(crate) fn render(&self, clock: &MonotonicClock, show: Option<Show<'_>>) -> Result<Rendering, Failure> {
-        let aggregate = self.scene.aggregate();
         let progress = Progress::new(clock);
         let report = |fraction| progress.set(fraction);
-        let refused = |error: RenderError| match error {
-            RenderError::Threads { .. } => Failure::Cannot(error.to_string()),
-            _ => Failure::input(error),
-        };
-        let Request { program, view, settings, .. } = &self.request;
-        let mut renderer = Renderer::new(&self.scene, &aggregate, view, program, clock, settings.clone())
-            .map_err(refused)?
-            .with_progress(&report);
-        if let Some(map) = &self.request.importance {
-            renderer = renderer.with_importance(map.values()).map_err(refused)?;
-        }
-        if let Some(thresholds) = &self.request.thresholds {
-            renderer = renderer.with_thresholds(thresholds).map_err(refused)?;
-        }
-        if self.request.continuous {
-            renderer = renderer.with_continuous_importance();
-        }
         let smoothed = &self.request.filter;
-        let rendering = match show {
-            Some(show) => renderer.render_stages(show).map(|rendering| (rendering, Vec::new())),
-            None if smoothed.is_empty() => renderer.render().map(|rendering| (rendering, Vec::new())),
-            None => renderer.render_smoothed(smoothed.iter().copied().collect()),
-        };
-        let (rendering, planes) = rendering.map_err(refused)?;
+        let (rendering, planes) = self.with_renderer(clock, |renderer| {
+            let renderer = renderer.with_progress(&report);
+            match show {
+                Some(show) => renderer.render_stages(show).map(|rendering| (rendering, Vec::new())),
+                None if smoothed.is_empty() => renderer.render().map(|rendering| (rendering, Vec::new())),
+                None => renderer.render_smoothed(smoothed.iter().copied().collect()),
+            }
+        })?;
         progress.done();
         for plane in planes {
             let percent = [plane.noise_before, plane.noise_after].map(|noise| 100.0 * noise);
@@ -207,9 +252,45 @@ impl Prepared {
         }
         for span in &rendering.stopped {
             let text = crex::Warning { message: "`*` was stopped after a million runs".to_owned(), span: *span };
-            console::say("warning", &text.render(program.text()));
+            console::say("warning", &text.render(self.request.program.text()));
         }
         Ok(rendering)
+    }
+
+    /// Does something with a renderer of what is asked for.
+    pub(crate) fn with_renderer<T>(
+        &self,
+        clock: &MonotonicClock,
+        work: impl FnOnce(Renderer<'_>) -> Result<T, RenderError>,
+    ) -> Result<T, Failure> {
+        let aggregate = self.scene.aggregate();
+        let refused = |error: RenderError| match error {
+            RenderError::Threads { .. } => Failure::Cannot(error.to_string()),
+            _ => Failure::input(error),
+        };
+        let Request { program, view, settings, .. } = &self.request;
+        let mut renderer =
+            Renderer::new(&self.scene, &aggregate, view, program, clock, settings.clone()).map_err(refused)?;
+        if let Some(map) = &self.request.importance {
+            renderer = renderer.with_importance(map.values()).map_err(refused)?;
+        }
+        if let Some(thresholds) = &self.request.thresholds {
+            renderer = renderer.with_thresholds(thresholds).map_err(refused)?;
+        }
+        if self.request.continuous {
+            renderer = renderer.with_continuous_importance();
+        }
+        work(renderer).map_err(refused)
+    }
+
+    /// What the scene was made from.
+    pub(crate) fn scene_hash(&self) -> String {
+        timed::scene_hash(&self.scene_inputs)
+    }
+
+    /// The components that the scene can spawn.
+    pub(crate) fn components(&self) -> ComponentSet {
+        self.scene.components(self.request.settings.limits.glossy_threshold)
     }
 }
 
@@ -353,11 +434,9 @@ fn write_ran(path: &Path, request: &Request, rendering: &Rendering) -> Result<()
     Ok(picture::write(path, &picture, Compression::Zip)?)
 }
 
-fn write_stats(args: &Args, request: &Request, rendering: &Rendering, clock: &MonotonicClock) -> Result<(), Failure> {
+fn write_stats(args: &Args, prepared: &Prepared, stats: Stats, clock: &MonotonicClock) -> Result<(), Failure> {
     let Some(file) = &args.stats else { return Ok(()) };
-    let threads = request.settings.threads;
-    let threads = threads.or_else(|| std::thread::available_parallelism().ok().map(usize::from)).unwrap_or(1);
-    let stats = Stats::new(&request.program, &request.settings, rendering, threads).with_wall_s(clock.now_s());
+    let stats = stats.with_scene(prepared.scene_hash()).with_wall_s(clock.now_s());
     let text = serde_json::to_string_pretty(&stats).map_err(|error| Failure::Cannot(error.to_string()))?;
     AtomicFile::write_all(file, format!("{text}\n").as_bytes())
         .map_err(|error| Failure::Cannot(format!("{}: cannot be written: {error}", file.display())))

@@ -9,6 +9,8 @@ use renderer::schedule::{Skipped, StageRow, executed};
 use renderer::work::WorkReport;
 use serde::Serialize;
 
+use crate::timed::TimedStats;
+
 /// The object.
 #[derive(Debug, Serialize)]
 pub(crate) struct Stats {
@@ -28,6 +30,10 @@ pub(crate) struct Stats {
     deadline_s: Option<f64>,
     /// Rays that still waited at the end.
     left: Counts,
+    /// A hash of what the scene was made from.
+    scene: String,
+    /// What a clock decided, under a time limit.
+    timed: Option<TimedStats>,
     stages: Vec<StageStats>,
 }
 
@@ -46,7 +52,7 @@ struct StageStats {
     group: Option<String>,
     rays: u64,
     spawned: Counts,
-    /// Summed over threads.
+    /// Summed over threads; under a time limit by the clock.
     seconds: f64,
     predicted_s: Option<f64>,
     skipped: SkippedStats,
@@ -77,8 +83,20 @@ impl Stats {
             peak_bytes: peak_bytes(),
             deadline_s: None,
             left: counts(&rendering.left),
+            scene: String::new(),
+            timed: None,
             stages: std::iter::once(primary).chain(rows).collect(),
         }
+    }
+
+    /// The same of a scene.
+    pub(crate) fn with_scene(self, scene: String) -> Self {
+        Self { scene, ..self }
+    }
+
+    /// The same of a run under a time limit, in seconds, or of one repeated.
+    pub(crate) fn with_time(self, deadline_s: Option<f64>, timed: TimedStats) -> Self {
+        Self { deadline_s, timed: Some(timed), ..self }
     }
 
     /// The same with the time since the program's start, seconds.

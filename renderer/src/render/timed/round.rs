@@ -187,9 +187,7 @@ impl<'a, 'r> Batch<'a, 'r> {
     /// Rays that a stage would run now, less those that probes have run already.
     fn admitted(&self, threshold: Option<f32>) -> BinOccupancy {
         let mut sum = PerComponent::default();
-        self.parcels
-            .iter()
-            .for_each(|parcel| add_counts(&mut sum, &parcel.admitted(self.tracer, threshold)));
+        self.parcels.iter().for_each(|parcel| add_counts(&mut sum, &parcel.admitted(self.tracer, threshold)));
         PerComponent::from_fn(|component| sum[component].saturating_sub(self.probed[component].0.rays))
     }
 
