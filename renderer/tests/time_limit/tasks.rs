@@ -5,7 +5,12 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 use renderer::component::{Component, PerComponent};
 use renderer::crex::{Program, compile};
-use renderer::schedule::{LEAST_PROBE, PROBE_SHARE, PROBES, ProfileCache, Skipped, StageRow, executed};
+use renderer::schedule::{
+    Budget, LEAST_PROBE, ManualClock, PROBE_SHARE, PROBES, ProfileCache, Skipped, StageRow, TimedScheduler, TimedWork,
+    executed,
+};
+
+use renderer::work::WorkReport;
 
 use crate::scene::{self, Scene, Spawning};
 use crate::tracer::{Prices, Timed, execute, knowing};
@@ -202,4 +207,34 @@ proptest! {
             prop_assert!(timed.probes.is_empty());
         }
     }
+}
+
+#[test]
+fn a_task_that_is_cut_off_is_undone_whole_and_nothing_follows() {
+    let program = compile("T[RS]D").expect("a crex");
+    let prices = Prices::flat(1000);
+    let mut profile = knowing(&prices);
+    let clock = ManualClock::default();
+    let budget = Budget::new(&clock, 100.0, 0.0);
+    let mut scheduler = TimedScheduler::new(&program, None, budget, &mut profile).expect("own thresholds");
+    let hundred = |_| PerComponent::from_fn(|_| 100);
+    let done = WorkReport { rays: 100, ..WorkReport::default() };
+    let mut begun = Vec::new();
+    while let Some(work) = scheduler.next(hundred) {
+        let TimedWork::Run(stage) = work else { continue };
+        begun.push((stage.component.letter(), scheduler.begins_task()));
+        // S takes far longer than it was predicted to, and is cut off.
+        if stage.component == Component::Specular {
+            clock.advance_ns(99_000_000_000);
+            scheduler.cut_off(&WorkReport { rays: 40, ..WorkReport::default() });
+        } else {
+            clock.advance_ns(100_000_000);
+            scheduler.report(&done);
+        }
+    }
+    assert_eq!(begun, [('T', true), ('R', true), ('S', false)], "a group is begun once");
+    let rows = scheduler.into_rows();
+    let rows: Vec<_> = rows.iter().map(|row| (row.stage.component.letter(), row.report.rays, row.skipped)).collect();
+    let time = Some(Skipped::Time);
+    assert_eq!(rows, [('T', 100, None), ('R', 0, time), ('S', 0, time), ('D', 0, time)]);
 }

@@ -7,6 +7,7 @@ mod continuous;
 mod execution;
 mod first_hits;
 mod furnace;
+mod limited;
 mod recursive;
 
 use renderer::color::Rgb;

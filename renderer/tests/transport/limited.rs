@@ -1,0 +1,159 @@
+//! Pictures within a time limit: whole at every bound, complete where they have samples, and repeatable. The clock is one
+//! that ticks when it is looked at, so these limits fall anywhere in the work and nothing waits.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use renderer::component::{Component, PerComponent};
+use renderer::crex::{self, Program};
+use renderer::film::Film;
+use renderer::render::{Renderer, RoundRecord, Settings, TimedRecord, TimedRendering};
+use renderer::schedule::{Budget, Clock, ProfileCache, RayKind};
+
+use crate::Stage;
+use crate::execution::{assert_same, room, settings};
+
+/// A millisecond passes at every look.
+#[derive(Default)]
+struct Ticking(AtomicU64);
+
+impl Clock for Ticking {
+    fn now_s(&self) -> f64 {
+        self.0.fetch_add(1, Ordering::Relaxed) as f64 * 1e-3
+    }
+}
+
+impl Stage {
+    fn within(&self, crex: &str, settings: Settings, seconds: f64, profile: &mut ProfileCache) -> TimedRendering {
+        let program = Program::new(&crex::parse(crex).unwrap());
+        let clock = Ticking::default();
+        let renderer = Renderer::new(&self.scene, &self.aggregate, &self.view, &program, &clock, settings).unwrap();
+        renderer.render_within(Budget::new(&clock, seconds, 0.0), profile).unwrap()
+    }
+}
+
+fn nothing_known() -> ProfileCache {
+    ProfileCache::new("scene", "machine")
+}
+
+/// Bounds from none at all to enough for several passes of nine tiles.
+const BOUNDS: [f64; 12] = [0.0, 0.01, 0.05, 0.2, 0.6, 1.0, 1.6, 2.5, 4.0, 7.0, 12.0, 20.0];
+
+#[test]
+fn every_bound_gives_a_whole_picture() {
+    // Matt plastic in a furnace shows its albedo with any sample: a pixel that is not filled, that counts a sample twice, or
+    // to which a skipped task gave a part of its light would differ from it.
+    let text = "void glow white 0 0 4 1 1 1 0\nwhite source sky 0 0 4 0 0 1 360\n\
+                void plastic stuff 0 0 5 .7 .5 .2 0 0\nstuff sphere ball 0 0 4 0 0 0 1\n";
+    let ball = Stage::new(text, [0.0, -5.0, 0.0], [0.0, 1.0, 0.0], 5.0);
+    let mut ran = 0;
+    for (samples, seconds) in BOUNDS.into_iter().flat_map(|seconds| [(1, seconds), (3, seconds)]) {
+        for crex in ["D", "[D]", "(TRSMGD)*"] {
+            let timed = ball.within(crex, settings(samples), seconds, &mut nothing_known());
+            for pixel in timed.rendering.film.beauty().values() {
+                let error = (*pixel - glam::Vec3::new(0.7, 0.5, 0.2)).abs().max_element();
+                assert!(error < 1e-6, "{crex}, {seconds} s: {pixel}");
+            }
+            ran += timed.record.rounds.len();
+        }
+    }
+    assert!(ran > 0, "some bound left time for a round");
+}
+
+#[test]
+fn a_record_repeats_its_picture_to_the_bit_with_any_number_of_threads() {
+    let room = room();
+    let mut records = Vec::new();
+    for (index, seconds) in BOUNDS.into_iter().enumerate() {
+        let crex = ["T{RSGM}D", "(TRSMGD)*", "T[RS]<GD>M"][index % 3];
+        let timed = room.within(crex, settings(2), seconds, &mut nothing_known());
+        let again = |threads| {
+            let settings = Settings { threads: Some(threads), ..settings(2) };
+            room.with(crex, settings, |renderer| renderer.replay(&timed.record).unwrap())
+        };
+        for threads in [1, 3] {
+            let again = again(threads);
+            assert_same(&timed.rendering, &again.rendering);
+            assert_eq!(timed.refined.rays, again.refined.rays);
+        }
+        records.push(timed.record);
+    }
+    let skipped = |record: &TimedRecord| record.rounds.iter().any(|round| round.ran.contains(&false));
+    assert!(records.iter().any(skipped), "some task was skipped");
+    assert!(records.iter().any(|record| record.rounds.is_empty()), "some bound was too small for a round");
+}
+
+/// All of 40 x 40 pixels in one round.
+fn one_round(samples: u32, ran: &[bool]) -> TimedRecord {
+    let round = RoundRecord { first_sample: 0, samples, tiles: 9, ran: ran.to_vec() };
+    TimedRecord { rounds: vec![round], units: 0 }
+}
+
+fn close(one: &Film, other: &Film) {
+    for component in Component::ALL {
+        let planes = (one.layer(component), other.layer(component));
+        let (Some(one), Some(other)) = planes else {
+            assert_eq!(planes, (None, None), "{component}");
+            continue;
+        };
+        for (one, other) in one.values().iter().zip(other.values()) {
+            assert!((*one - *other).abs().max_element() <= 1e-6 * (1.0 + one.abs().max_element()), "{one} {other}");
+        }
+    }
+}
+
+#[test]
+fn a_round_of_everything_is_the_picture_without_a_limit() {
+    let room = room();
+    for crex in ["TRSMGD", "T{RSGM}<DG>2"] {
+        let replay = room.with(crex, settings(4), |renderer| renderer.replay(&one_round(4, &[true; 20])).unwrap());
+        let plain = room.render(crex, settings(4));
+        close(&replay.rendering.film, &plain.film);
+        assert_eq!(replay.rendering.left, plain.left);
+    }
+}
+
+#[test]
+fn what_is_skipped_leaves_nothing_in_the_rounds() {
+    // T and D run, [RS] does not: the same rays as those of TD.
+    let room = room();
+    let ran = [true, false, false, true];
+    let replay = room.with("T[RS]D", settings(4), |renderer| renderer.replay(&one_round(4, &ran)).unwrap());
+    let plain = room.render("TD", settings(4));
+    close(&replay.rendering.film, &plain.film);
+    assert_eq!(replay.rendering.left, plain.left);
+}
+
+#[test]
+fn rounds_and_refinement_count_by_their_samples() {
+    // Nothing is skipped: two samples of rounds and two whole passes of refinement (14 levels of nine tiles, which take the
+    // sample numbers 2 and 3) are the picture of four samples, however they were traced.
+    let room = room();
+    let record = TimedRecord { units: 14 * 9, ..one_round(2, &[true; 6]) };
+    let both = room.with("TRSMGD", settings(2), |renderer| renderer.replay(&record).unwrap());
+    assert!((both.refined_samples - 2.0).abs() < 1e-12);
+    close(&both.rendering.film, &room.render("TRSMGD", settings(4)).film);
+    let refined = TimedRecord { rounds: Vec::new(), units: 14 * 9 };
+    let alone = room.with("TRSMGD", settings(2), |renderer| renderer.replay(&refined).unwrap());
+    assert_eq!(alone.rendering.primary.rays, 2 * 40 * 40);
+}
+
+#[test]
+fn an_overrunning_task_is_cut_off_and_leaves_nothing_half_lit() {
+    // The profile believes that rays cost next to nothing, the clock ticks all the same: tasks are admitted and overrun. What
+    // they leave must be what a record without them leaves.
+    let room = room();
+    let mut cut = 0;
+    for step in 0..40 {
+        let mut profile = nothing_known();
+        for kind in RayKind::ALL {
+            // Enough equal observations that the prediction is sure of itself.
+            (0..100).for_each(|_| profile.observe(kind, 1000, 2e-6 * 1000.0, &PerComponent::default()));
+        }
+        let timed = room.within("DTRSMG", settings(1), 0.02 + 0.004 * f64::from(step), &mut profile);
+        let Some(round) = timed.record.rounds.first() else { continue };
+        cut += u32::from(round.ran.contains(&false));
+        let again = room.with("DTRSMG", settings(1), |renderer| renderer.replay(&timed.record).unwrap());
+        assert_eq!(timed.rendering.film, again.rendering.film);
+    }
+    assert!(cut > 0, "no task was cut off or skipped");
+}
