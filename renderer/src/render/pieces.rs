@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::color::Rgb;
 use crate::component::{Component, ComponentSet};
 use crate::film::{Block, Film};
-use crate::transport::{Modulation, Parcel, RANKS, Samples, Tracer};
+use crate::transport::{Modulation, Parcel, Samples, Tracer};
 use crate::work::WorkReport;
 
 use super::Renderer;
@@ -39,7 +39,7 @@ impl<'a> Renderer<'a> {
 
     pub(super) fn samples(&self) -> Samples<'a> {
         let Settings { width, height, jitter, .. } = self.settings;
-        Samples { view: self.view, width, height, jitter, ranks: (0, RANKS) }
+        Samples { view: self.view, width, height, jitter }
     }
 
     pub(super) fn film(&self) -> Film {

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::crex::ThresholdError;
 use crate::film::{Film, Planes};
 use crate::schedule::Scheduler;
-use crate::transport::{Parcel, Samples, Tracer, Workspace};
+use crate::transport::{Parcel, RANKS, Tracer, Workspace};
 use crate::work::Work;
 
 use super::outcome::{Outcome, finish};
@@ -23,7 +23,6 @@ impl Renderer<'_> {
         let half = first.map_or(0, |_| self.first_half());
         let ranges: Vec<Range<u32>> =
             self.ranges(0..half).into_iter().chain(self.ranges(half..self.settings.samples)).collect();
-        let samples = self.samples();
         let film = Mutex::new(self.film());
         let done = AtomicU64::new(0);
         let all = (tiles.len() * ranges.len()) as f64;
@@ -37,7 +36,7 @@ impl Renderer<'_> {
                     for range in &ranges {
                         let parcel = kept.get_or_insert_with(|| self.parcel(*tile, range));
                         parcel.restart(*tile, range.clone(), self.stored(), self.has_ambient());
-                        outcome.add(self.run_alone(&tracer, &samples, parcel, workspace)?);
+                        outcome.add(self.run_alone(&tracer, &(0..RANKS), parcel, workspace)?);
                         parcel.add_to(sums, self.settings.ambient);
                         if let (true, Some(first)) = (range.end == half, first) {
                             first.lock().expect("no thread panicked").store(*tile, sums, half);
@@ -62,12 +61,12 @@ impl Renderer<'_> {
     pub(super) fn run_alone(
         &self,
         tracer: &Tracer<'_>,
-        samples: &Samples<'_>,
+        ranks: &Range<u16>,
         parcel: &mut Parcel,
         workspace: &mut Workspace,
     ) -> Result<Outcome, ThresholdError> {
         let mut scheduler = Scheduler::new(self.program, self.thresholds)?;
-        let primary = self.timed(|| parcel.trace_primary(tracer, samples, workspace));
+        let primary = self.timed(|| parcel.trace_lattice(tracer, &self.samples(), ranks, workspace));
         while let Some(work) = scheduler.next(&parcel.occupancy()) {
             match work {
                 Work::Release => parcel.release(),

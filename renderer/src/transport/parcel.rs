@@ -13,7 +13,7 @@ use crate::work::{BinOccupancy, Stage, WorkReport};
 use super::bins::{RayBins, SpawnRecord};
 use super::dimension;
 use super::direct::Scratch;
-use super::lattice::rank;
+use super::lattice::{RANKS, rank};
 use super::modulation::{Choice, Rule};
 use super::ray::{PathRay, RayPath};
 use super::spawn::Spawner;
@@ -30,8 +30,6 @@ pub struct Samples<'a> {
     pub height: usize,
     /// `-pj`: how much of a pixel's extent its samples cover, in [0, 1]; 1 is a box filter, 0 samples the centre.
     pub jitter: f64,
-    /// Only pixels of these ranks ([`rank`]) are sampled; all of them from 0 to [`RANKS`](super::RANKS).
-    pub ranks: (u16, u16),
 }
 
 /// Pixels and samples with the rays that they have brought forth so far.
@@ -74,11 +72,22 @@ impl Parcel {
         samples: &Samples<'_>,
         workspace: &mut Workspace,
     ) -> WorkReport {
+        self.trace_lattice(tracer, samples, &(0..RANKS), workspace)
+    }
+
+    /// As [`Self::trace_primary`], in the pixels of some ranks ([`rank`]) alone.
+    pub fn trace_lattice(
+        &mut self,
+        tracer: &Tracer<'_>,
+        samples: &Samples<'_>,
+        ranks: &Range<u16>,
+        workspace: &mut Workspace,
+    ) -> WorkReport {
         let mut rays = 0;
         let mut spawner = spawner(tracer, &mut self.bins, &mut self.planes, false);
         for pixel in 0..self.block.pixels() {
             let (x, y) = place(&self.block, pixel);
-            if !(samples.ranks.0..samples.ranks.1).contains(&rank(x, y)) {
+            if !ranks.contains(&rank(x, y)) {
                 continue;
             }
             let share = tracer.modulation.and_then(|modulation| modulation.share(x, y, name(x, y), tracer.seed));

@@ -8,7 +8,7 @@ use crate::component::Component;
 use crate::crex::ThresholdError;
 use crate::film::{Block, Plane, Planes};
 use crate::schedule::{ProfileCache, RayKind};
-use crate::transport::{Parcel, Samples, Tracer, Workspace, rank};
+use crate::transport::{Parcel, Tracer, Workspace, rank};
 
 use super::super::Renderer;
 use super::super::outcome::Outcome;
@@ -97,7 +97,7 @@ impl Refinement {
         let next = AtomicU64::new(first);
         let out_of_time = AtomicBool::new(false);
         let sample = self.first_sample.saturating_add(level.pass);
-        let samples = Samples { ranks: level.ranks, ..renderer.samples() };
+        let ranks = level.ranks.0..level.ranks.1;
         let this = &*self;
         let done = rayon::broadcast(|_| {
             let (mut workspace, mut outcome) = (Workspace::default(), Outcome::default());
@@ -119,13 +119,13 @@ impl Refinement {
                 let tile = this.tiles[place];
                 let parcel = parcel.get_or_insert_with(|| renderer.parcel(tile, &(0..0)));
                 parcel.restart(tile, sample..sample + 1, renderer.stored(), renderer.has_ambient());
-                outcome.add(renderer.run_alone(tracer, &samples, parcel, &mut workspace)?);
+                outcome.add(renderer.run_alone(tracer, &ranks, parcel, &mut workspace)?);
                 // A poisoned lock means that a thread panicked, and then so does this one.
                 let mut sums = this.sums[place].lock().expect("no thread panicked");
                 parcel.add_to(&mut sums.sums, renderer.settings.ambient);
                 for (pixel, weight) in sums.weights.iter_mut().enumerate() {
                     let rank = rank(tile.x + pixel % tile.width, tile.y + pixel / tile.width);
-                    *weight += u32::from((level.ranks.0..level.ranks.1).contains(&rank));
+                    *weight += u32::from(ranks.contains(&rank));
                 }
             }
             Ok(outcome)
