@@ -167,7 +167,7 @@ impl<'a, 'r> Batch<'a, 'r> {
         let tracer = self.tracer;
         let most = most.min(self.parcels.len());
         // Claimed in order, so that the parcels done are the first ones; each by one thread alone.
-        let waiting: Vec<_> = self.parcels[..most].iter_mut().map(|parcel| std::sync::Mutex::new(parcel)).collect();
+        let waiting: Vec<_> = self.parcels[..most].iter_mut().map(std::sync::Mutex::new).collect();
         let next = AtomicUsize::new(0);
         let reports = rayon::broadcast(|_| {
             let (mut workspace, mut sum) = (Workspace::default(), WorkReport::default());
