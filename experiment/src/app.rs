@@ -8,29 +8,48 @@
 mod desk;
 mod keys;
 mod pixels;
+mod prepare;
 mod screens;
 mod watch;
 
+use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
 use stimuli::Study;
 
+use crate::bot::Bot;
 use crate::clock::{Clock, Time};
 use crate::enrol::DataFolder;
 use crate::error::{Error, Result};
-use crate::session::Outcome;
 use crate::stimulus::Picture;
 
 pub use desk::{Desk, Exit};
-pub use screens::BACKGROUND;
+pub use screens::{BACKGROUND, style};
+
+/// What the window is opened for.
+#[derive(Debug)]
+pub enum Errand {
+    /// A session with a person.
+    Session,
+    /// Sessions with programs, one after the other.
+    Rehearsal(VecDeque<Bot>),
+    /// To find out what the machine can do.
+    SelfTest,
+}
 
 /// What a session in a window needs.
 #[derive(Debug)]
 pub struct Launch<'a> {
     /// The study.
     pub study: &'a Study,
-    /// Where its data go.
-    pub data: &'a DataFolder,
+    /// Where its data go; a self-test needs none.
+    pub data: Option<&'a DataFolder>,
+    /// What for.
+    pub errand: Errand,
+    /// Why a main study may run on a display that is not verified; `None` where it must not.
+    pub allow_unverified: Option<String>,
+    /// Whether refresh and framebuffer are asked: always, except in tests of the screens without any graphics.
+    pub graphics: bool,
     /// Every picture of the study.
     pub pictures: Vec<Picture>,
     /// The participant's code, if it is known already.
@@ -43,14 +62,14 @@ pub struct Launch<'a> {
     pub monitor: Option<usize>,
 }
 
-/// Opens the window and conducts a session in it; says how the session ended, `None` if it never began.
+/// Opens the window and runs the errand in it; says why the window was closed.
 ///
 /// # Errors
 /// If no window can be opened, the display cannot show the pictures, or the session cannot begin.
-pub fn run(launch: Launch<'_>) -> Result<Option<Outcome>> {
+pub fn run(launch: Launch<'_>) -> Result<Exit> {
     let exit = Arc::new(Mutex::new(Exit::Unbegun));
     let mut viewport = egui::ViewportBuilder::default()
-        .with_title(format!("crex-session: {}", launch.study.title))
+        .with_title("crex-session") // the study's title may say what it is about
         .with_fullscreen(true)
         .with_decorations(false)
         .with_app_id("crex-session");
@@ -84,9 +103,8 @@ pub fn run(launch: Launch<'_>) -> Result<Option<Outcome>> {
         Err(_) => Exit::Unbegun,
     };
     match ended {
-        Exit::Unbegun => Ok(None),
-        Exit::Ended(outcome) => Ok(Some(outcome)),
         Exit::Refused(why) => Err(Error::Machine(why)),
+        exit => Ok(exit),
     }
 }
 
@@ -102,7 +120,12 @@ impl eframe::App for Window<'_> {
         self.desk.begin_pass();
     }
 
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        if self.desk.asks_for_monitor()
+            && let Some(monitor) = frame.winit_window().and_then(|window| window.current_monitor())
+        {
+            self.desk.monitor(monitor.name(), monitor.refresh_rate_millihertz());
+        }
         self.desk.show(ui);
         if let Some(exit) = self.desk.exit() {
             if let Ok(mut shared) = self.exit.lock() {

@@ -80,6 +80,15 @@ impl Time {
         };
     }
 
+    /// How many of its seconds pass in one of the wall's: 1 where it jumps.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        match self {
+            Self::Jumps { .. } => 1.0,
+            Self::Runs(clock) => clock.speed(),
+        }
+    }
+
     /// Seconds from the session's start.
     #[must_use]
     pub fn now_s(&self) -> f64 {
@@ -113,6 +122,12 @@ impl Utc {
     #[must_use]
     pub fn micros(self) -> u64 {
         self.micros
+    }
+
+    /// The moment so many seconds before this one.
+    #[must_use]
+    pub fn before_s(self, seconds: f64) -> Self {
+        Self { micros: self.micros.saturating_sub((seconds * 1e6).max(0.0).round() as u64) }
     }
 
     /// Seconds from `earlier` to this moment; negative if the system's clock was set back in between.

@@ -8,12 +8,14 @@ use analysis::trial_log::{Phase, Trial as Row};
 use stimuli::Study;
 
 use crate::clock::Utc;
+use crate::display::Display;
 use crate::enrol::{Claimed, DataFolder, analysis_plan_hash};
 use crate::error::{Error, Result};
 use crate::log::{DisplayFacts, SessionLog};
 use crate::script;
 use crate::session::{Effect, Input, Outcome, Record, Session};
 use crate::setup::Conditions;
+use crate::withdraw::STONE;
 
 /// A session under way, with everything it writes to.
 #[derive(Debug)]
@@ -90,6 +92,9 @@ impl<'a> Conductor<'a> {
                 data.path().display()
             )));
         }
+        if folder.join(STONE).exists() {
+            return Err(Error::Input(format!("{participant} withdrew from the study; use another code")));
+        }
         let claimed = match data.claimed_by(participant)? {
             Some(claimed) => claimed,
             None => data.claim(participant)?, // killed between taking the code and taking a slot
@@ -123,6 +128,12 @@ impl<'a> Conductor<'a> {
         &self.session
     }
 
+    /// The arm: it decides which texts are shown, and no screen names it.
+    #[must_use]
+    pub fn arm(&self) -> &str {
+        &self.claimed.slot.arm
+    }
+
     /// The study.
     #[must_use]
     pub fn study(&self) -> &'a Study {
@@ -135,6 +146,14 @@ impl<'a> Conductor<'a> {
     /// If it cannot be written.
     pub fn state(&mut self, conditions: Conditions) -> Result<()> {
         self.log.state(conditions, Utc::now())
+    }
+
+    /// Notes what was found about the display. `zero` is the moment of the session's zero second.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn found(&mut self, display: Display, zero: Utc) -> Result<()> {
+        self.log.found(display, zero, Utc::now())
     }
 
     /// The trial whose row was brought to the disk last in this sitting.

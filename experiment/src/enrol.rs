@@ -11,19 +11,23 @@
 //! the slot. No file is ever changed or removed.
 
 use std::cell::Cell;
-use std::io::ErrorKind;
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use stimuli::{Sha256, Study};
 
-use crate::clock::Utc;
+use crate::clock::{Clock, Utc};
 use crate::design::{CellTotal, Plan, Slot};
 use crate::error::{Error, Result};
-use crate::log::{Identity, write_new};
+use crate::log::{AppendFile, Identity, write_new};
 
 /// Name and version of this program, as every row has it.
 pub const VERSION: &str = concat!("crex-session ", env!("CARGO_PKG_VERSION"));
+
+/// What a session may need at most, bytes: its lines are a few hundred bytes each.
+const ROOM: usize = 1 << 20;
 
 /// What may be known of a plan beforehand; `plan.json`.
 #[derive(Debug, Serialize)]
@@ -110,6 +114,24 @@ pub struct DataFolder {
 }
 
 impl DataFolder {
+    /// Opens a data folder that is there already, whoever answers in it.
+    ///
+    /// # Errors
+    /// As [`DataFolder::open`], and if there is no plan's record.
+    pub fn reopen(folder: &Path, study: &Study, stimuli_hash: Sha256) -> Result<Self> {
+        let file = folder.join("plan.json");
+        let bytes = std::fs::read(&file).map_err(|error| match error.kind() {
+            ErrorKind::NotFound => Error::Input(format!("{}: no data of a study are here", folder.display())),
+            _ => Error::io("read", &file)(error),
+        })?;
+        let key: PlanKey = serde_json::from_slice(&bytes).map_err(|error| {
+            let (file, line, column) = (file.display(), error.line(), error.column());
+            Error::Input(format!("{file}:{line}:{column}: not a plan's record: {error}"))
+        })?;
+        let kind = if key.simulated { Kind::Simulated { times: key.times } } else { Kind::Real };
+        Self::open(folder, study, stimuli_hash, kind)
+    }
+
     /// Opens the data folder of a study; the first time, writes the plan's record there.
     ///
     /// # Errors
@@ -179,10 +201,51 @@ impl DataFolder {
         &self.folder
     }
 
+    /// Whether programs answer here.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        self.kind.is_simulated()
+    }
+
     /// The folder of a participant's session.
     #[must_use]
     pub fn session_folder(&self, participant: &str) -> PathBuf {
         self.folder.join("sessions").join(participant)
+    }
+
+    /// Writes, syncs and removes a file of [`ROOM`] bytes, so that a full disk or a folder that cannot be written is known
+    /// before a participant sits down.
+    ///
+    /// # Errors
+    /// If that cannot be done.
+    pub fn check_room(&self) -> Result<()> {
+        let path = self.folder.join(format!(".room-{}-{}", std::process::id(), Utc::now().micros()));
+        let written = write_and_sync(&path, &vec![b' '; ROOM]);
+        let removed = std::fs::remove_file(&path);
+        written.and(removed).map_err(|source| {
+            let kib = ROOM / 1024;
+            let folder = self.folder.display();
+            Error::Machine(format!("{folder}: {kib} KiB for a session's data cannot be written there: {source}"))
+        })
+    }
+
+    /// How long a line takes to be on this folder's disk: the median and the longest of 40, milliseconds.
+    ///
+    /// # Errors
+    /// If nothing can be written there.
+    pub fn time_disk_ms(&self) -> Result<[f64; 2]> {
+        let path = self.folder.join(format!(".speed-{}-{}", std::process::id(), Utc::now().micros()));
+        let mut file = AppendFile::create(&path)?;
+        let mut took_ms = Vec::new();
+        let line = [b'x'; 400];
+        for _ in 0..40 {
+            let clock = Clock::new(1.0);
+            file.append(&line)?;
+            took_ms.push(clock.now_s() * 1e3);
+        }
+        std::fs::remove_file(&path).map_err(Error::io("remove", &path))?;
+        took_ms.sort_by(f64::total_cmp);
+        Ok([took_ms[20], took_ms[39]])
     }
 
     /// Takes a code for a participant and the next free slot for it.
@@ -372,6 +435,12 @@ fn record(study: &Study, plan: &Plan, stimuli_hash: Sha256, kind: Kind) -> Resul
         version: VERSION.to_owned(),
         created_utc: Utc::now().to_string(),
     })
+}
+
+fn write_and_sync(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut file = OpenOptions::new().write(true).create_new(true).open(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
 }
 
 fn to_json(value: &impl Serialize) -> Result<Vec<u8>> {

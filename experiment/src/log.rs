@@ -20,12 +20,14 @@ use analysis::trial_log::{Reader, Sidecar, Trial as Row, header_line, row_line};
 use stimuli::Sha256;
 
 use crate::clock::Utc;
+use crate::display::Display;
 use crate::error::{Error, Result};
 use crate::session::{Done, Record};
 use crate::setup::Conditions;
 
+pub(crate) use disk::sync_folder_of;
 pub use disk::{AppendFile, write_new};
-pub use journal::{Event, Journal, Line};
+pub use journal::{Event, Journal, Line, read_journal};
 pub use row::{DisplayFacts, Identity};
 
 /// The open files of one session.
@@ -132,6 +134,14 @@ impl SessionLog {
     /// If it cannot be written.
     pub fn state(&mut self, conditions: Conditions, now: Utc) -> Result<()> {
         self.journal.append(Event::Conditions { conditions }, now)
+    }
+
+    /// Brings what was found about the display to the disk.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn found(&mut self, display: Display, zero: Utc, now: Utc) -> Result<()> {
+        self.journal.append(Event::Display { display, zero_unix_us: zero.micros() }, now)
     }
 
     /// Brings a record to the disk; it is there when this returns. Gives the row that a trial became.

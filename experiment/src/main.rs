@@ -6,19 +6,25 @@ use std::process::ExitCode;
 
 use analysis::report::{self, Options, Report};
 use clap::Parser;
-use experiment::app::{self, Launch};
+use experiment::app::{self, Errand, Exit, Launch};
+use experiment::bids;
+use experiment::bot::Bot;
 use experiment::clock::{Clock, Time, Utc};
 use experiment::conduct::Conductor;
 use experiment::enrol::{DataFolder, Kind};
 use experiment::error::{Error, Result};
 use experiment::observer::{Eye, Observer};
 use experiment::rehearse;
+use experiment::selftest::Verdict;
 use experiment::session::Outcome;
-use experiment::stimulus::Pictures;
+use experiment::stimulus::{Picture, Pictures};
+use experiment::withdraw::withdraw;
 use stimuli::Study;
 
 /// The study that is run when none is named.
 const SHIPPED: &str = "stimuli/corridor";
+
+const NO_DISPLAY_FOUND: &str = "no display was found (neither DISPLAY nor WAYLAND_DISPLAY is set): a session needs one";
 
 /// Shows the pictures of a study and records the answers.
 ///
@@ -59,6 +65,26 @@ struct Arguments {
     #[arg(long, value_name = "N")]
     display: Option<usize>,
 
+    /// Finds out what this machine and display can do, and says what they are fit for
+    #[arg(long, conflicts_with_all = ["participant", "simulate", "plan"])]
+    self_test: bool,
+
+    /// Lets a main study run on a display whose refresh is not verified; REASON is written into the data
+    #[arg(long, value_name = "REASON", value_parser = clap::builder::NonEmptyStringValueParser::new())]
+    allow_unverified: Option<String>,
+
+    /// Erases what participant ID answered and leaves a dated note in its place
+    #[arg(long, value_name = "ID", conflicts_with_all = ["participant", "simulate", "plan", "self_test"])]
+    withdraw: Option<String>,
+
+    /// Writes the data of --data as a BIDS dataset into a new folder
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["participant", "simulate", "plan", "self_test", "withdraw"])]
+    bids: Option<PathBuf>,
+
+    /// With --simulate: the observers answer in the real window
+    #[arg(long, requires = "simulate")]
+    window: bool,
+
     /// Rehearsals only: makes the time of a simulated session run, X times as fast as the wall's
     #[arg(long, value_name = "X", requires = "simulate", value_parser = parse_speed)]
     speed: Option<f64>,
@@ -66,6 +92,15 @@ struct Arguments {
     /// Simulated observers see one step of quality with probability P, and guess otherwise
     #[arg(long, value_name = "P", requires = "simulate", default_value = "0", value_parser = parse_probability)]
     sees: f64,
+
+    /// Simulated observers answer without having looked with probability P
+    #[arg(long, value_name = "P", requires = "simulate", default_value = "0", value_parser = parse_probability)]
+    lapses: f64,
+
+    /// Simulated observers see what a metric predicts: JSON of pictures and how many JOD they are worse than the best of
+    /// their layout, as in {"a_cbq": 0.8}
+    #[arg(long, value_name = "FILE", requires = "simulate", conflicts_with = "sees")]
+    jod: Option<PathBuf>,
 
     /// Simulated observers leave before each screen of text with probability P
     #[arg(long, value_name = "P", requires = "simulate", default_value = "0", value_parser = parse_probability)]
@@ -104,12 +139,23 @@ fn run(arguments: &Arguments) -> Result<()> {
     if let Some(observers) = arguments.simulate {
         return simulate(&study, observers, arguments);
     }
+    if let Some(participant) = &arguments.withdraw {
+        return erase(&study, participant, arguments);
+    }
+    if let Some(to) = &arguments.bids {
+        let data = DataFolder::reopen(&data_folder(&study, arguments), &study, Pictures::of(&study)?.hash()?)?;
+        let participants = bids::export(&data, &study, to)?;
+        eprintln!("{participants} participants in {}", to.display());
+        return Ok(());
+    }
+    if arguments.self_test {
+        return self_test(&study, arguments);
+    }
     if has_display() {
         return session(&study, arguments);
     }
     if arguments.participant.is_some() {
-        let message = "no display was found (neither DISPLAY nor WAYLAND_DISPLAY is set): a session needs one";
-        return Err(Error::Machine(message.to_owned()));
+        return Err(Error::Machine(NO_DISPLAY_FOUND.to_owned()));
     }
     let observers = study.arms.iter().map(|arm| arm.n).sum();
     eprintln!(
@@ -139,65 +185,152 @@ fn has_display() -> bool {
     !cfg!(all(unix, not(target_os = "macos"))) || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
+/// Where the data of a study go if nothing else is said.
+fn data_folder(study: &Study, arguments: &Arguments) -> PathBuf {
+    arguments.data.clone().unwrap_or_else(|| Path::new("data").join(&study.id))
+}
+
 fn session(study: &Study, arguments: &Arguments) -> Result<()> {
     let pictures = Pictures::of(study)?;
+    let decoded = decode(&pictures)?;
+    let folder = data_folder(study, arguments);
+    let data = DataFolder::open(&folder, study, pictures.hash()?, Kind::Real)?;
+    data.check_room()?;
+    eprintln!("Plan {}, {} slots.", data.plan().hash(), data.plan().slots.len());
+    match app::run(Launch { pictures: decoded, ..launch(study, Some(&data), arguments) })? {
+        Exit::Ended(outcome) => {
+            eprintln!("The session has ended ({}); its data are in {}.", outcome.word(), folder.display());
+        }
+        _ => eprintln!("No session was begun."),
+    }
+    Ok(())
+}
+
+fn decode(pictures: &Pictures<'_>) -> Result<Vec<Picture>> {
     let mut decoded = Vec::new();
     pictures.each(|picture| decoded.push(picture))?;
-    let folder = arguments.data.clone().unwrap_or_else(|| Path::new("data").join(&study.id));
-    let data = DataFolder::open(&folder, study, pictures.hash()?, Kind::Real)?;
-    eprintln!("Plan {}, {} slots.", data.plan().hash(), data.plan().slots.len());
-    let ended = app::run(Launch {
+    Ok(decoded)
+}
+
+/// What a session with a person needs, pictures left out.
+fn launch<'a>(study: &'a Study, data: Option<&'a DataFolder>, arguments: &Arguments) -> Launch<'a> {
+    Launch {
         study,
-        data: &data,
-        pictures: decoded,
+        data,
+        errand: Errand::Session,
+        allow_unverified: arguments.allow_unverified.clone(),
+        graphics: true,
+        pictures: Vec::new(),
         participant: arguments.participant.clone(),
         resume: arguments.resume,
         speed: 1.0,
         monitor: arguments.display,
-    })?;
-    match ended {
-        None => eprintln!("No session was begun."),
-        Some(outcome) => eprintln!("The session has ended ({}); its data are in {}.", outcome.word(), folder.display()),
     }
+}
+
+fn self_test(study: &Study, arguments: &Arguments) -> Result<()> {
+    if !has_display() {
+        return Err(Error::Machine(NO_DISPLAY_FOUND.to_owned()));
+    }
+    let pictures = decode(&Pictures::of(study)?)?;
+    let data = match &arguments.data {
+        Some(folder) => Some(DataFolder::reopen(folder, study, Pictures::of(study)?.hash()?)?),
+        None => None,
+    };
+    let launch = launch(study, data.as_ref(), arguments);
+    match app::run(Launch { errand: Errand::SelfTest, pictures, ..launch })? {
+        Exit::Tested(test) => {
+            let json = || serde_json::to_string(&test).map_err(|error| Error::Machine(error.to_string()));
+            print(&if arguments.json { json()? } else { test.to_text() })?;
+            match test.verdict {
+                Verdict::Unfit => Err(Error::Machine("this machine and display are unfit".to_owned())),
+                _ => Ok(()),
+            }
+        }
+        _ => Err(Error::Machine("the self-test was broken off".to_owned())),
+    }
+}
+
+fn erase(study: &Study, participant: &str, arguments: &Arguments) -> Result<()> {
+    let data = DataFolder::reopen(&data_folder(study, arguments), study, Pictures::of(study)?.hash()?)?;
+    let done = withdraw(&data, participant)?;
+    let (folder, files) = (done.folder.display(), done.files);
+    let again = if done.again { " They had withdrawn before." } else { "" };
+    eprintln!(
+        "{files} files of {participant} are erased; a dated note is in {folder}.{again} Reports, exports and backups made \
+         before still hold the answers: make or clear them again."
+    );
     Ok(())
 }
 
 fn simulate(study: &Study, observers: u32, arguments: &Arguments) -> Result<()> {
     let pictures = Pictures::of(study)?;
-    pictures.each(drop)?;
     let planned = study.arms.iter().map(|arm| arm.n).sum::<u32>().max(1);
     let kind = Kind::Simulated { times: observers.div_ceil(planned).max(1) };
     let new = || Path::new("rehearsal").join(format!("{}-{}", study.id, Utc::now().compact()));
     let folder = arguments.data.clone().unwrap_or_else(new);
+    let eye = eye(arguments)?;
+    let observer = |participant: &str| {
+        Observer::new(eye.clone(), arguments.leaves, study.seed, participant).lapsing(arguments.lapses)
+    };
+    let codes: Vec<String> = (1..=observers).map(|number| format!("sim-{number:05}")).collect();
+    let decoded = decode(&pictures)?;
     let data = DataFolder::open(&folder, study, pictures.hash()?, kind)?;
     eprintln!("Simulated: no person answers here. Data go to {}.", folder.display());
-    let eye = if arguments.sees > 0.0 { Eye::Threshold { sees: arguments.sees } } else { Eye::Guesser };
-    let mut logs = Vec::new();
-    for number in 1..=observers {
-        let participant = format!("sim-{number:05}");
-        let mut observer = Observer::new(eye, arguments.leaves, study.seed, &participant);
-        let again = arguments.resume && data.session_folder(&participant).is_dir();
-        let start = if again { Conductor::resume } else { Conductor::begin };
-        let begun = start(study, &data, &participant, rehearse::NO_DISPLAY)?;
-        let mut conductor = begun.conductor;
-        begun.notes.iter().for_each(|note| eprintln!("{note}"));
-        let mut time = arguments.speed.map_or(Time::Jumps { now_s: 0.0 }, |speed| Time::Runs(Clock::new(speed)));
-        time.start_at(begun.since_start_s);
-        let mut told = None;
-        let outcome = rehearse::run(&mut conductor, &mut observer, &mut time, &mut |conductor| {
-            if arguments.speed.is_some() && conductor.last_row() != told {
-                told = conductor.last_row();
-                eprintln!("{participant}: trial {} saved", told.unwrap_or_default());
-            }
-        })?;
-        logs.push(data.session_folder(&participant).join(format!("{participant}.csv")));
-        if outcome != Outcome::Completed || observers <= 64 {
-            eprintln!("{participant}: {}", outcome.word());
+    if arguments.window {
+        let bots = codes.iter().map(|code| Bot::new(code.clone(), observer(code))).collect();
+        let launch = launch(study, Some(&data), arguments);
+        let speed = arguments.speed.unwrap_or(1.0);
+        let exit = app::run(Launch { errand: Errand::Rehearsal(bots), pictures: decoded, speed, ..launch })?;
+        if exit == Exit::Unbegun {
+            return Err(Error::Machine("the window was closed before the rehearsal began".to_owned()));
+        }
+    } else {
+        for code in &codes {
+            rehearse_one(study, &data, code, observer(code), arguments)?;
         }
     }
+    let logs: Vec<_> = codes.iter().map(|code| data.session_folder(code).join(format!("{code}.csv"))).collect();
     let options =
         Options { plan: analysis::plan::Plan::of(study), pictures: Some(analysis::pictures::load(&study.folder)?) };
     write_report(&report::of_logs(&logs, &options)?, &folder, arguments.json)
+}
+
+fn eye(arguments: &Arguments) -> Result<Eye> {
+    if let Some(file) = &arguments.jod {
+        let read = |source| Error::Io { action: "read", path: file.clone(), source };
+        let text = std::fs::read_to_string(file).map_err(read)?;
+        return Eye::metric(&text).map_err(|what| Error::Input(format!("{}:{what}", file.display())));
+    }
+    Ok(if arguments.sees > 0.0 { Eye::Threshold { sees: arguments.sees } } else { Eye::Guesser })
+}
+
+/// One observer's session without a window.
+fn rehearse_one(
+    study: &Study,
+    data: &DataFolder,
+    participant: &str,
+    mut observer: Observer,
+    arguments: &Arguments,
+) -> Result<()> {
+    let again = arguments.resume && data.session_folder(participant).is_dir();
+    let start = if again { Conductor::resume } else { Conductor::begin };
+    let begun = start(study, data, participant, rehearse::NO_DISPLAY)?;
+    let mut conductor = begun.conductor;
+    begun.notes.iter().for_each(|note| eprintln!("{note}"));
+    let mut time = arguments.speed.map_or(Time::Jumps { now_s: 0.0 }, |speed| Time::Runs(Clock::new(speed)));
+    time.start_at(begun.since_start_s);
+    let mut told = None;
+    let outcome = rehearse::run(&mut conductor, &mut observer, &mut time, &mut |conductor| {
+        if arguments.speed.is_some() && conductor.last_row() != told {
+            told = conductor.last_row();
+            eprintln!("{participant}: trial {} saved", told.unwrap_or_default());
+        }
+    })?;
+    if outcome != Outcome::Completed || arguments.simulate.unwrap_or_default() <= 64 {
+        eprintln!("{participant}: {}", outcome.word());
+    }
+    Ok(())
 }
 
 /// Writes the report beside the data in every format, and prints it in one.
@@ -217,7 +350,7 @@ fn write_report(report: &Report, folder: &Path, json: bool) -> Result<()> {
 }
 
 fn show_plan(study: &Study, arguments: &Arguments) -> Result<()> {
-    let folder = arguments.data.clone().unwrap_or_else(|| Path::new("data").join(&study.id));
+    let folder = data_folder(study, arguments);
     let data = DataFolder::open(&folder, study, Pictures::of(study)?.hash()?, Kind::Real)?;
     let plan = data.plan();
     if arguments.unblind {

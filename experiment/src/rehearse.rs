@@ -35,11 +35,11 @@ pub fn run(
         if let Screen::Trouble(why) = conductor.session().screen() {
             return Err(Error::Machine(why.to_owned()));
         }
-        // The screen is seen at once; a timed one changes when it is due.
+        // A screen is drawn and seen at once; a timed one changes when it is due.
+        conductor.step(Input::Frame { shows_s: time.now_s(), frame_s: FRAME_S });
         conductor.step(Input::Swapped { at_s: time.now_s(), frame_s: FRAME_S });
         if let Some(due_s) = conductor.session().due_s() {
-            let now_s = time.until(due_s);
-            conductor.step(Input::Frame { shows_s: now_s, frame_s: FRAME_S });
+            time.until(due_s);
             continue;
         }
         let session = conductor.session();

@@ -1,6 +1,7 @@
 //! From a study and a slot of its plan to the steps of one session.
 
 use analysis::trial_log::Phase;
+use stimuli::study::Viewing;
 use stimuli::{Stimulus, Study};
 
 use crate::design::{Pair, Slot};
@@ -10,9 +11,11 @@ use crate::trial::{Asks, Shown, TrialPlan};
 /// The steps of the session of one slot: consent, instructions, practice, the critical trial, what was noticed, whether
 /// the purpose was known, the obvious pair.
 ///
-/// Until the critical answer nothing asks about quality: practice asks for counts alone.
+/// Until the critical answer nothing asks about quality: practice asks for counts alone, and for nothing in an arm of free
+/// viewing.
 #[must_use]
 pub fn steps(study: &Study, slot: &Slot) -> Vec<Step> {
+    let counts = study.viewing(&slot.arm) == Viewing::Task;
     let mut steps = vec![Step::Consent, Step::Page(Page::Instructions)];
     let mut number = 0;
     let mut trial = |phase, first: &Stimulus, second: &Stimulus, asks: Asks| {
@@ -24,13 +27,13 @@ pub fn steps(study: &Study, slot: &Slot) -> Vec<Step> {
         steps.push(Step::Page(Page::Practice));
     }
     for practice in &study.practice {
-        let asks = Asks { counts: true, ..Asks::default() };
+        let asks = Asks { counts, ..Asks::default() };
         steps.push(trial(Phase::Practice, &practice.first, &practice.second, asks));
     }
     steps.push(Step::Page(Page::Ready));
     let confidence = study.wording.confidence.is_some();
     let Pair { first, second } = &slot.critical;
-    steps.push(trial(Phase::Critical, first, second, Asks { counts: true, worse: true, confidence }));
+    steps.push(trial(Phase::Critical, first, second, Asks { counts, worse: true, confidence }));
     steps.extend([Step::Noticed, Step::KnownTask]);
     if let Some(Pair { first, second }) = &slot.check {
         steps.push(Step::Page(Page::Check));

@@ -103,7 +103,7 @@ pub enum Input {
         /// The period that frames should have.
         frame_s: f64,
     },
-    /// A frame is about to be drawn.
+    /// A frame is about to be drawn, of what the session then shows.
     Frame {
         /// When it will be seen.
         shows_s: f64,
@@ -189,6 +189,8 @@ pub struct Session {
     timing: Timing,
     at: usize,
     stage: Stage,
+    /// Whether the present stage was drawn, where it is no trial: only then can a swap have shown it.
+    drawn: bool,
     saving: Option<(Record, Then)>,
     trouble: Option<String>,
     known_task: Option<bool>,
@@ -216,6 +218,7 @@ impl Session {
             timing,
             at: 0,
             stage: Stage::Still(None),
+            drawn: false,
             saving: None,
             trouble: None,
             known_task: None,
@@ -268,6 +271,15 @@ impl Session {
         }
     }
 
+    /// Whether the present screen was seen: only then does a key answer it.
+    #[must_use]
+    pub fn is_shown(&self) -> bool {
+        match &self.stage {
+            Stage::Trial(trial) => trial.is_shown(),
+            Stage::Still(seen) | Stage::End(_, seen) => seen.is_some(),
+        }
+    }
+
     /// Whether the participant said to have known the purpose; `None` until that was asked.
     #[must_use]
     pub fn known_task(&self) -> Option<bool> {
@@ -302,8 +314,9 @@ impl Session {
             Input::Swapped { at_s, frame_s } => self.swapped(at_s, frame_s),
             Input::Frame { shows_s, frame_s } => {
                 self.watch_escape(shows_s);
-                if let (Stage::Trial(trial), None) = (&mut self.stage, &self.saving) {
-                    trial.frame(shows_s, frame_s);
+                match (&mut self.stage, &self.saving) {
+                    (Stage::Trial(trial), None) => trial.frame(shows_s, frame_s),
+                    _ => self.drawn = true,
                 }
                 Effect::None
             }
@@ -321,9 +334,10 @@ impl Session {
 
     fn swapped(&mut self, at_s: f64, frame_s: f64) -> Effect {
         match &mut self.stage {
-            Stage::Still(seen) | Stage::End(_, seen) => {
+            Stage::Still(seen) | Stage::End(_, seen) if self.drawn => {
                 seen.get_or_insert(at_s);
             }
+            Stage::Still(_) | Stage::End(..) => {}
             Stage::Trial(trial) => trial.swapped(at_s, frame_s),
         }
         self.finish_trial()
@@ -392,7 +406,7 @@ impl Session {
 
     fn go(&mut self, at: usize) -> Effect {
         self.at = at;
-        self.stage = Stage::Still(None);
+        (self.stage, self.drawn) = (Stage::Still(None), false);
         match self.steps.get(at) {
             Some(Step::Trial(plan)) => {
                 let record = Record::PairStarts { trial: plan.number, phase: plan.phase };
@@ -420,7 +434,7 @@ impl Session {
             }
             Then::Close(outcome) => self.save(Record::Ended(outcome), Then::End(outcome)),
             Then::End(outcome) => {
-                self.stage = Stage::End(outcome, None);
+                (self.stage, self.drawn) = (Stage::End(outcome, None), false);
                 Effect::None
             }
         }

@@ -61,6 +61,12 @@ pub struct Form {
 pub type Conditions = BTreeMap<String, Option<String>>;
 
 impl Form {
+    /// Every condition as not measured: a program states nothing.
+    #[must_use]
+    pub fn nothing_stated() -> Conditions {
+        CONDITIONS.iter().map(|condition| (condition.name.to_owned(), None)).collect()
+    }
+
     /// The pixels per degree of what was typed: none while width or distance is not a number above 0.
     #[must_use]
     pub fn pixels_per_degree(&self, study: &Study) -> Option<f64> {

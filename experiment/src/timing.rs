@@ -4,6 +4,10 @@
 //! swaps that is the start of scan-out, to about a millisecond, and nowhere does it include the panel's own lag. Every
 //! figure here is of swaps.
 
+mod refresh;
+
+pub use refresh::{Refresh, RefreshProbe};
+
 /// What was measured over one interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IntervalFrames {

@@ -114,6 +114,8 @@ pub struct Trial {
     plan: TrialPlan,
     timing: Timing,
     moment: Moment,
+    /// Whether the present moment was drawn: only then can a swap have shown it.
+    drawn: bool,
     /// When the present moment's first frame was handed over; `None` until it was.
     onset_s: Option<f64>,
     /// The picture whose frames are being followed.
@@ -133,6 +135,7 @@ impl Trial {
             plan,
             timing,
             moment: Moment::Fixation,
+            drawn: false,
             onset_s: None,
             watch: None,
             typed: String::new(),
@@ -184,7 +187,8 @@ impl Trial {
         Some(self.onset_s? + self.lasts_s()?)
     }
 
-    /// The frame drawn last was handed over at `at_s`; frames should come every `frame_s`.
+    /// The frame drawn last was handed over at `at_s`; frames should come every `frame_s`. A screen that a key brought on
+    /// since then was not in that frame.
     pub fn swapped(&mut self, at_s: f64, frame_s: f64) {
         let follows = |interval| self.moment == Moment::Picture(interval);
         match self.watch.take() {
@@ -195,7 +199,7 @@ impl Trial {
             Some((interval, watch)) => self.keep(interval, watch.end(at_s, frame_s)),
             None => {}
         }
-        if self.onset_s.is_none() {
+        if self.onset_s.is_none() && self.drawn {
             self.onset_s = Some(at_s);
             if let Moment::Picture(interval) = self.moment {
                 self.watch = Some((interval, FrameWatch::new(at_s)));
@@ -203,12 +207,13 @@ impl Trial {
         }
     }
 
-    /// The next frame will be seen at `shows_s`, and the one after it `frame_s` later: moves on if the present screen's
-    /// time is nearer to this frame than to that.
+    /// The next frame is about to be drawn and will be seen at `shows_s`, and the one after it `frame_s` later: moves on
+    /// if the present screen's time is nearer to this frame than to that.
     pub fn frame(&mut self, shows_s: f64, frame_s: f64) {
         if self.due_s().is_some_and(|due_s| shows_s + frame_s / 2.0 >= due_s) {
             self.advance();
         }
+        self.drawn = true;
     }
 
     /// A key went down at `now_s`. A key that comes before its question was seen answers nothing.
@@ -289,7 +294,7 @@ impl Trial {
             Moment::Worse if asks.confidence => Moment::Confidence,
             Moment::Worse | Moment::Confidence | Moment::Done => Moment::Done,
         };
-        self.onset_s = None;
+        (self.drawn, self.onset_s) = (false, None);
         self.skip_what_takes_no_time();
     }
 

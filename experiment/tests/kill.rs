@@ -11,6 +11,8 @@ use std::time::Duration;
 
 use analysis::trial_log::{Phase, Reader, Trial as Row};
 use experiment::draw::Draws;
+use experiment::log::read_journal;
+use stimuli::Sha256;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_crex-session");
 
@@ -39,9 +41,24 @@ fn whole_rows(path: &Path) -> Vec<Row> {
     rows
 }
 
+/// What the plan decides of a row.
+fn planned(row: &Row) -> impl PartialEq + std::fmt::Debug + use<> {
+    let shown = (row.first_stimulus.clone(), row.second_stimulus.clone(), row.first_count, row.second_count);
+    (row.participant.clone(), row.arm.clone(), row.phase, row.trial, shown, row.plan_hash.clone())
+}
+
+/// The rows of the same two sessions without a kill.
+fn undisturbed() -> Vec<Row> {
+    let folder = tempfile::tempdir().unwrap();
+    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
+    support::write_study(&study, |text| text);
+    assert!(simulate(&study, &data, "100000").wait().unwrap().success());
+    ["sim-00001", "sim-00002"].iter().flat_map(|participant| whole_rows(&log(&data, participant))).collect()
+}
+
 /// Kills the program at random moments again and again until two sessions have come to their ends; every trial that it said
-/// to have saved is there each time, and in the end every planned trial has one row.
-fn kill_and_resume(seed: u64) -> u32 {
+/// to have saved is there each time, the journal's chain holds, and in the end the rows are those of the uninterrupted plan.
+fn kill_and_resume(seed: u64, uninterrupted: &[Row]) -> u32 {
     let folder = tempfile::tempdir().unwrap();
     let (study, data) = (folder.path().join("study"), folder.path().join("data"));
     support::write_study(&study, |text| text);
@@ -69,7 +86,13 @@ fn kill_and_resume(seed: u64) -> u32 {
             None => kills += 1,
         }
     }
+    let all: Vec<Row> =
+        ["sim-00001", "sim-00002"].iter().flat_map(|participant| whole_rows(&log(&data, participant))).collect();
+    assert_eq!(all.iter().map(planned).collect::<Vec<_>>(), uninterrupted.iter().map(planned).collect::<Vec<_>>());
     for participant in ["sim-00001", "sim-00002"] {
+        let text = std::fs::read_to_string(log(&data, participant)).unwrap();
+        assert!(text.ends_with('\n'), "no half line is left");
+        read_journal(&log(&data, participant).with_extension("events.jsonl")).unwrap();
         let rows = whole_rows(&log(&data, participant));
         assert_eq!(rows.iter().map(|row| row.trial).collect::<Vec<_>>(), [1, 2, 3]);
         let phases: Vec<Phase> = rows.iter().map(|row| row.phase).collect();
@@ -84,11 +107,26 @@ fn kill_and_resume(seed: u64) -> u32 {
 
 #[test]
 fn a_killed_session_has_lost_no_finished_trial_and_goes_on() {
-    let kills: u32 = (0..3).map(kill_and_resume).sum();
-    assert!(kills > 0, "no kill came in time");
+    let wanted = support::times("SESSION_KILLS", 12);
+    let uninterrupted = undisturbed();
+    let (mut kills, mut seed) = (0, 0);
+    while kills < wanted && seed < 10 * u64::from(wanted) {
+        kills += kill_and_resume(seed, &uninterrupted);
+        seed += 1;
+    }
+    assert!(kills >= wanted, "no kill came in time");
+    eprintln!("{kills} kills in {seed} pairs of sessions");
 }
 
-/// One code, started sixteen times at once: one session, and nothing of it overwritten.
+/// The digests of a folder's files.
+fn digests(folder: &Path) -> Vec<(PathBuf, Sha256)> {
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut found: Vec<_> = files.map(|path| (path.clone(), Sha256::of_file(&path).unwrap())).collect();
+    found.sort();
+    found
+}
+
+/// One code, started 64 times at once: one session, and nothing of it overwritten; then again, with the session there.
 #[test]
 fn one_code_started_at_once_many_times_is_one_session() {
     let folder = tempfile::tempdir().unwrap();
@@ -99,17 +137,23 @@ fn one_code_started_at_once_many_times_is_one_session() {
         command.arg(&study).args(["--simulate", "1", "--data"]).arg(&data);
         command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
     };
-    let children: Vec<Child> = (0..16).map(|_| start()).collect();
-    let mut went_through = 0;
-    for mut child in children {
-        let mut said = String::new();
-        child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
-        let status = child.wait().unwrap();
-        went_through += u32::from(status.success());
-        assert!(status.success() || (status.code() == Some(2) && said.contains("has a session")), "{said}");
-    }
-    assert_eq!(went_through, 1);
+    let all_at_once = |many: u32| {
+        let children: Vec<Child> = (0..many).map(|_| start()).collect();
+        let mut went_through = 0;
+        for mut child in children {
+            let mut said = String::new();
+            child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+            let status = child.wait().unwrap();
+            went_through += u32::from(status.success());
+            assert!(status.success() || (status.code() == Some(2) && said.contains("has a session")), "{said}");
+        }
+        went_through
+    };
+    assert_eq!(all_at_once(64), 1);
     assert_eq!(whole_rows(&log(&data, "sim-00001")).len(), 3);
+    let before = digests(&data.join("sessions/sim-00001"));
+    assert_eq!(all_at_once(8), 0);
+    assert_eq!(digests(&data.join("sessions/sim-00001")), before);
 }
 
 /// What is refused, and with which exit code.
@@ -164,4 +208,57 @@ fn without_a_display_the_study_is_rehearsed_and_reported() {
         .map(|arm| (arm["arm"].as_str().unwrap(), arm["n"].as_u64().unwrap()))
         .collect();
     assert_eq!(arms, [("HQ/CBQ", 4), ("HQ/HQ", 4)]);
+}
+
+/// A disk that is full at some moment (here: no file may grow beyond a limit): what was saved is whole, what was not is said,
+/// and once there is room the session goes on.
+#[test]
+#[cfg(unix)]
+fn a_full_disk_tears_no_row_and_the_session_goes_on() {
+    let mut stopped = 0;
+    for blocks in 3..12 {
+        let folder = tempfile::tempdir().unwrap();
+        let (study, data) = (folder.path().join("study"), folder.path().join("data"));
+        support::write_study(&study, |text| text.replace("n = 16", "n = 4"));
+        let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$1\" --simulate 1 --data \"$2\"");
+        let output = Command::new("sh").args(["-c", &script, PROGRAM]).arg(&study).arg(&data).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        if !output.status.success() {
+            assert_eq!(output.status.code(), Some(1), "{said}");
+            assert!(said.contains("cannot"), "{said}");
+            stopped += u32::from(data.join("sessions/sim-00001").exists());
+        }
+        let text = std::fs::read_to_string(log(&data, "sim-00001")).unwrap_or_default();
+        assert!(text.is_empty() || text.ends_with('\n'), "half a row: {text}");
+        assert!(Command::new(PROGRAM).arg(&study).args(["--simulate", "1", "--resume", "--data"]).arg(&data).output().unwrap().status.success());
+        let rows = whole_rows(&log(&data, "sim-00001"));
+        assert_eq!(rows.iter().map(|row| row.trial).collect::<Vec<_>>(), [1, 2, 3]);
+    }
+    assert!(stopped > 0, "no limit fell into a session");
+}
+
+/// Who withdraws leaves a dated stone and no answer; the slot goes back, and the code stays taken.
+#[test]
+fn who_withdraws_leaves_a_stone_and_no_answers() {
+    let folder = tempfile::tempdir().unwrap();
+    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
+    support::write_study(&study, |text| text.replace("n = 16", "n = 4"));
+    let run = |arguments: &[&str]| {
+        let output = Command::new(PROGRAM).arg(&study).args(arguments).arg("--data").arg(&data).output().unwrap();
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    assert_eq!(run(&["--simulate", "3"]).0, Some(0));
+    for _ in 0..2 {
+        assert_eq!(run(&["--withdraw", "sim-00002"]).0, Some(0));
+    }
+    let left: Vec<_> = digests(&data.join("sessions/sim-00002"));
+    assert_eq!(left.len(), 1);
+    let stone: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&left[0].0).unwrap()).unwrap();
+    assert_eq!((&stone["lines_erased"], &stone["simulated"]), (&3.into(), &true.into()));
+    assert!(stone["withdrawn_utc"].as_str().unwrap().ends_with('Z'));
+    assert!(std::fs::read_to_string(data.join("slots/0002-1.back.json")).unwrap().contains("withdrawn"));
+    assert_eq!(run(&["--withdraw", "nobody"]).0, Some(2));
+    let (code, said) = run(&["--simulate", "2", "--resume"]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("withdrew"), "{said}");
 }

@@ -1,5 +1,6 @@
 //! The study file: what is rendered, shown and asked, and how the answers will be judged.
 
+mod extend;
 mod importance;
 mod judge;
 mod locate;
@@ -16,7 +17,9 @@ use serde::{Deserialize, Serialize};
 pub use importance::{Falloff, ImportancePlan, MapRequest};
 pub use judge::{AnalysisPlan, Exclusions};
 pub use picture::{Layout, Quality, Request, Stimulus};
-pub use protocol::{Arm, Consent, DisplayGeometry, Hints, Kind, Practice, QualityCheck, Task, Timing, Wording};
+pub use protocol::{
+    Arm, Consent, DisplayGeometry, FreeWording, Hints, Kind, Practice, QualityCheck, Task, Timing, Viewing, Wording,
+};
 
 use crate::error::{Error, Mistake, Result};
 use crate::hash::Sha256;
@@ -80,7 +83,10 @@ impl Study {
     pub fn load(path: &Path) -> Result<Self> {
         let file = if path.is_dir() { path.join("study.toml") } else { path.to_owned() };
         let text = std::fs::read_to_string(&file).map_err(|source| Error::io("read", &file, source))?;
-        let mut study = Self::parse(&text, &file)?;
+        let mut study = match extend::base_of(&text) {
+            Some(base) => extend::read(&text, &file, &base)?,
+            None => Self::parse(&text, &file)?,
+        };
         study.folder = file.parent().unwrap_or(Path::new("")).to_owned();
         Ok(study)
     }
@@ -152,6 +158,12 @@ impl Study {
     pub fn true_count(&self, layout: &str) -> Option<u32> {
         let counts = &self.layout(layout)?.true_counts;
         Some(self.task.kinds.iter().filter_map(|kind| counts.get(&kind.id)).sum())
+    }
+
+    /// What the participants of an arm do while they look.
+    #[must_use]
+    pub fn viewing(&self, arm: &str) -> Viewing {
+        self.arms.iter().find(|other| other.name == arm).map_or(Viewing::Task, |arm| arm.viewing)
     }
 
     /// The digest of the study as it was read: of its content, so that comments and white space do not count.

@@ -1,33 +1,41 @@
-//! One sitting: pictures into the graphics memory, the experimenter's set-up, the session.
+//! One sitting: the display is measured, pictures go into the graphics memory, the experimenter's set-up, the session.
 
-use std::collections::HashMap;
+mod begin;
+mod run;
 
-use analysis::trial_log::{OnsetSource, Vsync};
+use std::collections::{HashMap, VecDeque};
+
 use egui::Ui;
 use stimuli::Study;
 
-use super::Launch;
 use super::keys::{Stroke, strokes};
 use super::pixels::{Uploaded, window_px};
-use super::screens::{self, BACKGROUND, SetUp};
+use super::prepare::{Reading, does_not_fit, undrawable};
+use super::screens::{self, BACKGROUND};
 use super::watch::Watch;
-use crate::clock::Time;
+use super::{Errand, Launch};
+use crate::bot::Bot;
+use crate::clock::{Time, Utc};
 use crate::conduct::Conductor;
+use crate::display::{Display, PixelCheck};
 use crate::enrol::DataFolder;
 use crate::input::{Interruption, Key};
-use crate::log::DisplayFacts;
-use crate::session::{Input, Outcome, Screen};
+use crate::selftest::SelfTest;
+use crate::session::Outcome;
 use crate::setup::Form;
 use crate::stimulus::Picture;
-use crate::timing::{Pace, Pacer};
+use crate::timing::{IntervalFrames, Pace, Pacer, RefreshProbe};
+use crate::trial::Trial;
 
 /// Why the window closes.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Exit {
     /// No session was begun.
     Unbegun,
-    /// The session ended like this.
+    /// The session, or the last of several, ended like this.
     Ended(Outcome),
+    /// The self-test's outcome.
+    Tested(Box<SelfTest>),
     /// There can be no session here, and why.
     Refused(String),
 }
@@ -37,12 +45,16 @@ pub enum Exit {
 enum Phase<'a> {
     /// The window finds its size: how long it has had it, seconds' moment and passes.
     Settling { since_s: f64, passes: u32, size_px: [usize; 2] },
-    /// Pictures are uploaded and drawn once, one a pass.
-    Preparing { left: Vec<Picture> },
+    /// Swaps are timed.
+    Measuring(Box<RefreshProbe>),
+    /// Pictures are uploaded, drawn once and read back, one after the other.
+    Preparing { left: Vec<Picture>, reading: Option<(Reading, u32)> },
     /// The experimenter's screen.
     SetUp { form: Box<Form>, problem: String },
     /// The session.
     Session(Box<Conductor<'a>>),
+    /// The self-test: the pair being shown, how many are left, what was seen.
+    Testing { trial: Box<Trial>, left: u32, seen: Vec<IntervalFrames> },
     /// There can be none.
     Refused(String),
 }
@@ -51,11 +63,18 @@ enum Phase<'a> {
 #[derive(Debug)]
 pub struct Desk<'a> {
     study: &'a Study,
-    data: &'a DataFolder,
+    data: Option<&'a DataFolder>,
     participant: Option<String>,
     resume: bool,
+    /// Programs that answer, one after the other; the first is at the desk.
+    bots: VecDeque<Bot>,
+    is_test: bool,
+    /// Whether there is a graphics card to be asked.
+    graphics: bool,
     waiting: Vec<Picture>,
     phase: Phase<'a>,
+    display: Display,
+    os_hz: Option<f64>,
     pictures: HashMap<String, Uploaded>,
     even: Option<Uploaded>,
     time: Time,
@@ -63,6 +82,8 @@ pub struct Desk<'a> {
     watch: Watch,
     /// When this pass began: the frame before was handed over by then.
     pass_s: f64,
+    /// The same by the system's clock, which goes on while the machine sleeps.
+    pass_utc: Utc,
     /// When the frame before was begun, after waiting; `None` if none was.
     begun_s: Option<f64>,
     frame_s: f64,
@@ -74,21 +95,37 @@ pub struct Desk<'a> {
 const SETTLED: (f64, u32) = (0.6, 8);
 /// The pace where no display sets one, seconds.
 const FRAME_S: f64 = 1.0 / 60.0;
+/// A pass that comes so much later than the one before, seconds of the wall's clock, comes after a sleep.
+const ASLEEP_S: f64 = 1.0;
+/// A picture that was not read back after so many passes cannot be.
+const READ_WITHIN: u32 = 10;
 
 impl<'a> Desk<'a> {
     /// A desk whose window has just been opened.
     #[must_use]
     pub fn new(launch: Launch<'a>, time: Time) -> Self {
+        let (mut bots, mut is_test) = (VecDeque::new(), false);
+        match launch.errand {
+            Errand::Session => {}
+            Errand::Rehearsal(observers) => bots = observers,
+            Errand::SelfTest => is_test = true,
+        }
         Self {
             study: launch.study,
             data: launch.data,
             participant: launch.participant,
             resume: launch.resume,
+            bots,
+            is_test,
+            graphics: launch.graphics,
             waiting: launch.pictures,
             phase: Phase::Settling { since_s: time.now_s(), passes: 0, size_px: [0, 0] },
+            display: Display { allowed_unverified: launch.allow_unverified, ..Display::default() },
+            os_hz: None,
             pictures: HashMap::new(),
             even: None,
             pass_s: time.now_s(),
+            pass_utc: Utc::now(),
             time,
             pacer: Pacer::new(Pace::Clock(FRAME_S)),
             watch: Watch::default(),
@@ -105,6 +142,18 @@ impl<'a> Desk<'a> {
         self.exit.clone()
     }
 
+    /// Whether it must still be told which monitor it is on.
+    #[must_use]
+    pub fn asks_for_monitor(&self) -> bool {
+        matches!(self.phase, Phase::Settling { .. })
+    }
+
+    /// The monitor, as the system describes it.
+    pub fn monitor(&mut self, name: Option<String>, refresh_millihertz: Option<u32>) {
+        self.display.monitor = name;
+        self.os_hz = refresh_millihertz.filter(|&rate| rate > 0).map(|rate| f64::from(rate) / 1e3);
+    }
+
     /// A pass begins: stamps the moment.
     pub fn begin_pass(&mut self) {
         self.pass_s = self.time.now_s();
@@ -116,15 +165,21 @@ impl<'a> Desk<'a> {
             self.pacer.drawn(begun_s, self.pass_s);
         }
         let strokes = strokes(ui.ctx());
-        let happened = self.watch.look(ui.ctx());
+        let mut happened = self.watch.look(ui.ctx());
+        let utc = Utc::now();
+        if utc.since_s(std::mem::replace(&mut self.pass_utc, utc)) > ASLEEP_S {
+            happened.push(Interruption::Suspended);
+        }
         if happened.contains(&Interruption::CloseRequested) {
             self.close_requested(ui.ctx());
         }
         match self.phase {
             Phase::Settling { .. } => self.settle(ui),
+            Phase::Measuring(_) => self.measure(ui),
             Phase::Preparing { .. } => self.prepare(ui),
             Phase::SetUp { .. } => self.set_up(ui, &strokes),
             Phase::Session(_) => self.session(ui, &strokes, &happened),
+            Phase::Testing { .. } => self.test(ui),
             Phase::Refused(_) => self.refused(ui, &strokes),
         }
     }
@@ -139,184 +194,146 @@ impl<'a> Desk<'a> {
         }
     }
 
+    fn picture_px(&self) -> [usize; 2] {
+        let display = &self.study.display;
+        [display.width_px, display.height_px].map(|n| usize::try_from(n).unwrap_or(usize::MAX))
+    }
+
     fn settle(&mut self, ui: &mut Ui) {
         screens::message(ui, "One moment", "The window is being opened.");
-        self.wait_for_frame(None);
+        self.wait_for_frame();
         let now_px = window_px(ui.ctx());
         let Phase::Settling { since_s, passes, size_px } = &mut self.phase else { return };
         if *size_px != now_px {
             (*since_s, *passes, *size_px) = (self.pass_s, 0, now_px);
         }
         *passes += 1;
-        if self.pass_s - *since_s < SETTLED.0 || *passes < SETTLED.1 {
+        let real_s = (self.pass_s - *since_s) / self.time.speed();
+        if real_s < SETTLED.0 || *passes < SETTLED.1 {
             return;
         }
-        self.phase = match self.cannot_show(ui.ctx()) {
-            Some(why) => Phase::Refused(why),
-            None => Phase::Preparing { left: std::mem::take(&mut self.waiting) },
+        self.display.window_px = now_px;
+        self.display.scale = ui.ctx().pixels_per_point();
+        let texts = screens::texts(self.study);
+        let undrawable = undrawable(ui.ctx(), &texts);
+        self.phase = if let Some(why) = does_not_fit(ui.ctx(), self.picture_px()) {
+            Phase::Refused(why)
+        } else if !undrawable.is_empty() {
+            Phase::Refused(format!(
+                "The texts of the study have characters that this program cannot draw: {undrawable}"
+            ))
+        } else if self.graphics {
+            Phase::Measuring(Box::new(RefreshProbe::new(self.os_hz, self.study.seed)))
+        } else {
+            self.measured()
         };
     }
 
-    /// Why the study cannot be shown in this window.
-    fn cannot_show(&self, context: &egui::Context) -> Option<String> {
-        let display = &self.study.display;
-        let wanted = [display.width_px, display.height_px].map(|n| usize::try_from(n).unwrap_or(usize::MAX));
-        let window = window_px(context);
-        if window[0] < wanted[0] || window[1] < wanted[1] {
-            return Some(format!(
-                "The pictures have {} x {} pixels and the window only {} x {}. They are shown pixel for pixel or not at \
-                 all: use a larger display. (Without a window manager a window cannot fill the screen.)",
-                wanted[0], wanted[1], window[0], window[1]
-            ));
+    /// What follows once it is known whether the display paces its frames. A rehearsal answers by program whatever the
+    /// display does, and its rows say so.
+    fn measured(&mut self) -> Phase<'a> {
+        match self.display.refuses(self.study.demo || self.is_test || !self.bots.is_empty()) {
+            Some(why) => Phase::Refused(why),
+            None => Phase::Preparing { left: std::mem::take(&mut self.waiting), reading: None },
         }
-        let most = context.input(|input| input.max_texture_side);
-        if wanted.iter().any(|&side| side > most) {
-            return Some(format!("This machine's graphics cannot hold a picture of more than {most} pixels a side."));
-        }
-        if !self.study.demo {
-            return Some(
-                "This study is not a demonstration, and this release does not verify that a display paces its frames: \
-                 it conducts demonstrations only."
-                    .to_owned(),
-            );
-        }
-        None
     }
 
-    /// One picture a pass: uploaded, and drawn under an even grey, so that its first showing is not its first drawing.
+    /// Frames of the full cost, as fast as they come or held back, until the refresh is known.
+    fn measure(&mut self, ui: &mut Ui) {
+        let size_px = self.picture_px();
+        let even = self.even.get_or_insert_with(|| Uploaded::even(ui.ctx(), size_px, BACKGROUND));
+        even.draw(ui);
+        screens::line_in_the_middle(ui, "One moment: the display is being measured.");
+        let Phase::Measuring(probe) = &mut self.phase else { return };
+        let speed = self.time.speed();
+        if let Some(refresh) = probe.swapped(self.pass_s / speed) {
+            self.display.refresh = Some(refresh);
+            self.phase = self.measured();
+            return;
+        }
+        let delay_s = probe.delay_s() * speed;
+        self.time.until(self.time.now_s() + delay_s);
+    }
+
     fn prepare(&mut self, ui: &mut Ui) {
-        let Phase::Preparing { left } = &mut self.phase else { return };
-        let next = left.pop();
-        let many = left.len();
-        if let Some(picture) = &next {
-            let uploaded = Uploaded::new(ui.ctx(), picture);
-            uploaded.draw(ui);
-            let size_px = [picture.width_px, picture.height_px].map(|n| usize::try_from(n).unwrap_or(usize::MAX));
-            let even = self.even.get_or_insert_with(|| Uploaded::even(ui.ctx(), size_px, BACKGROUND));
-            even.draw(ui);
-            self.pictures.insert(picture.stimulus.id(), uploaded);
+        let size_px = self.picture_px();
+        let even = self.even.get_or_insert_with(|| Uploaded::even(ui.ctx(), size_px, BACKGROUND)).clone();
+        let Phase::Preparing { left, reading } = &mut self.phase else { return };
+        if let Some((read, passes)) = reading {
+            *passes += 1;
+            let pixels = self.display.pixels.get_or_insert_with(PixelCheck::default);
+            match read.differing_bytes() {
+                Some(bytes) => {
+                    pixels.pictures += 1;
+                    pixels.differing_bytes += bytes;
+                    *reading = None;
+                }
+                None if *passes > READ_WITHIN => {
+                    self.phase = Phase::Refused(
+                        "The window's framebuffer cannot be read: nobody would know what was shown.".to_owned(),
+                    );
+                    return;
+                }
+                None => {}
+            }
         }
+        if reading.is_none()
+            && let Some(picture) = left.pop()
+        {
+            let uploaded = Uploaded::new(ui.ctx(), &picture);
+            self.pictures.insert(picture.stimulus.id(), uploaded.clone());
+            if self.graphics {
+                *reading = Some((Reading::begin(ui, picture, &uploaded, &even), 0));
+            } else {
+                uploaded.draw(ui);
+                even.draw(ui);
+            }
+        }
+        let (many, ready) = (left.len(), left.is_empty() && reading.is_none());
         screens::message(ui, "One moment", &format!("{many} pictures are being prepared."));
-        self.wait_for_frame(None);
-        if next.is_none() {
-            let form = Form { code: self.participant.clone().unwrap_or_default(), ..Form::default() };
-            self.phase = Phase::SetUp { form: Box::new(form), problem: String::new() };
+        self.wait_for_frame();
+        if ready {
+            self.prepared(ui.ctx());
         }
     }
 
-    fn set_up(&mut self, ui: &mut Ui, strokes: &[Stroke]) {
-        self.wait_for_frame(None);
-        // Enter begins; left to egui it would also press whatever has the focus.
-        ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Enter));
-        let [width, height] = window_px(ui.ctx());
-        let facts = format!(
-            "Window {width} x {height} pixels, scale {}. Refresh not verified. Data go to {}.",
-            ui.ctx().pixels_per_point(),
-            self.data.path().display()
-        );
-        let Phase::SetUp { form, problem } = &mut self.phase else { return };
-        let mut act = screens::set_up(ui, self.study, form, &facts, problem);
-        screens::demo_notice(ui, self.study);
-        if strokes.contains(&Stroke::Down(Key::Enter)) {
-            act = SetUp::Begin;
-        }
-        if act == SetUp::Begin {
-            let form = form.clone();
-            self.begin(ui.ctx(), form);
-        }
-    }
-
-    fn begin(&mut self, context: &egui::Context, form: Box<Form>) {
-        let display =
-            DisplayFacts { onset_source: OnsetSource::SwapReturn, refresh_hz: None, vsync: Vsync::Unverified };
-        let begun = form.finish(self.study).and_then(|conditions| {
-            let start = if self.resume { Conductor::resume } else { Conductor::begin };
-            let mut begun = start(self.study, self.data, &form.code, display).map_err(|error| error.to_string())?;
-            begun.conductor.state(conditions).map_err(|error| error.to_string())?;
-            Ok(begun)
-        });
-        match begun {
-            Ok(begun) => {
-                self.time.start_at(begun.since_start_s);
-                self.pacer = Pacer::new(Pace::Clock(FRAME_S));
-                self.begun_s = None; // it was a moment of the time before
-                context.memory_mut(|memory| memory.stop_text_input());
-                self.phase = Phase::Session(Box::new(begun.conductor));
+    fn prepared(&mut self, context: &egui::Context) {
+        match self.display.pixels {
+            Some(PixelCheck { differing_bytes, .. }) if differing_bytes > 0 && !self.is_test => {
+                self.phase = Phase::Refused(format!(
+                    "{differing_bytes} bytes on the screen are not those of the pictures' files (scale {}). Set the scale \
+                     to a whole number and switch off whatever changes pictures.",
+                    self.display.scale
+                ));
             }
-            Err(problem) => self.phase = Phase::SetUp { form, problem },
-        }
-    }
-
-    fn session(&mut self, ui: &mut Ui, strokes: &[Stroke], happened: &[Interruption]) {
-        let Phase::Session(conductor) = &mut self.phase else { return };
-        for &what in happened {
-            conductor.step(Input::Interrupted(what));
-        }
-        // Keys first: what was pressed before this moment was pressed before the new screen was seen.
-        for stroke in strokes {
-            let session = conductor.session();
-            let writes = session.screen() == Screen::Noticed && !session.abort_asked();
-            match *stroke {
-                Stroke::Down(Key::Enter) if writes => {
-                    conductor.step(Input::Text(std::mem::take(&mut self.noticed)));
-                }
-                Stroke::Down(key) => conductor.step(Input::Key { key, now_s: self.pass_s }),
-                Stroke::Up(key) => conductor.step(Input::Released(key)),
+            _ if self.is_test => self.begin_test(context),
+            _ => {
+                let form = Form { code: self.participant.clone().unwrap_or_default(), ..Form::default() };
+                self.phase = Phase::SetUp { form: Box::new(form), problem: String::new() };
             }
-        }
-        conductor.step(Input::Swapped { at_s: self.pass_s, frame_s: self.frame_s });
-        let due_s = conductor.session().due_s();
-        let plan = self.pacer.plan(self.time.now_s(), due_s);
-        let begun_s = self.time.until(plan.start_s);
-        let late_s = (begun_s - plan.start_s).max(0.0);
-        self.begun_s = Some(begun_s);
-        self.frame_s = plan.frame_s;
-        conductor.step(Input::Frame { shows_s: plan.shows_s + late_s, frame_s: plan.frame_s });
-        if let Some(outcome) = conductor.finished() {
-            self.exit = Some(Exit::Ended(outcome));
-        }
-        let session = conductor.session();
-        let screen = session.screen();
-        let timed = matches!(screen, Screen::Fixation | Screen::Picture(_) | Screen::Gap);
-        if timed {
-            ui.ctx().set_cursor_icon(egui::CursorIcon::None);
-        }
-        match &screen {
-            Screen::Picture(stimulus) => {
-                if let Some(picture) = self.pictures.get(&stimulus.id()) {
-                    picture.draw(ui);
-                }
-            }
-            Screen::Fixation | Screen::Gap => {
-                if let Some(even) = &self.even {
-                    even.draw(ui);
-                }
-                if screen == Screen::Fixation {
-                    screens::fixation(ui);
-                }
-            }
-            _ => screens::text(ui, self.study, &screen, &mut self.noticed),
-        }
-        if session.abort_asked() {
-            screens::abort_notice(ui);
-        } else if !timed {
-            screens::demo_notice(ui, self.study);
         }
     }
 
     fn refused(&mut self, ui: &mut Ui, strokes: &[Stroke]) {
-        self.wait_for_frame(None);
+        self.wait_for_frame();
         let Phase::Refused(why) = &self.phase else { return };
         screens::message(ui, "No session here", &format!("{why}\n\nPress Enter to close."));
-        if strokes.contains(&Stroke::Down(Key::Enter)) {
+        if strokes.contains(&Stroke::Down(Key::Enter)) || !self.bots.is_empty() || self.is_test {
             self.exit = Some(Exit::Refused(why.clone()));
         }
     }
 
     /// Keeps the pace where nothing is timed.
-    fn wait_for_frame(&mut self, due_s: Option<f64>) {
+    fn wait_for_frame(&mut self) {
+        self.next_frame(None);
+    }
+
+    /// Waits until the next frame must be begun; says when it will be seen, seconds.
+    fn next_frame(&mut self, due_s: Option<f64>) -> f64 {
         let plan = self.pacer.plan(self.time.now_s(), due_s);
-        self.begun_s = Some(self.time.until(plan.start_s));
+        let begun_s = self.time.until(plan.start_s);
+        self.begun_s = Some(begun_s);
         self.frame_s = plan.frame_s;
+        plan.shows_s + (begun_s - plan.start_s).max(0.0)
     }
 }

@@ -11,11 +11,14 @@ use crate::setup::{CONDITIONS, Form};
 pub const BACKGROUND: Color32 = Color32::from_gray(128);
 const INK: Color32 = Color32::BLACK;
 
+/// The last screen of a session that was broken off.
+const ENDED: &str = "The session has ended. Thank you.";
+
 /// The widest line of text, points.
 const COLUMN: f32 = 860.0;
 
 /// Large type, dark on grey.
-pub(super) fn style(context: &egui::Context) {
+pub fn style(context: &egui::Context) {
     context.set_theme(egui::Theme::Light);
     context.all_styles_mut(|style| {
         style.visuals.panel_fill = BACKGROUND;
@@ -67,6 +70,12 @@ fn hints(ui: &mut Ui, lines: &[&String]) {
     }
 }
 
+/// Gives what is drawn without words a name for those who cannot see it, and for tests.
+pub(super) fn name(ui: &Ui, name: &str) {
+    let response = ui.interact(ui.ctx().content_rect(), ui.scope_id().with(name), egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+}
+
 /// The fixation mark: a cross of 2 x 24 points.
 pub(super) fn fixation(ui: &Ui) {
     let centre = ui.ctx().content_rect().center();
@@ -75,8 +84,14 @@ pub(super) fn fixation(ui: &Ui) {
     ui.painter().vline(centre.x, centre.y - 12.0..=centre.y + 12.0, stroke);
 }
 
-/// A screen of text. `noticed` is what is being typed where words are asked for.
-pub(super) fn text(ui: &mut Ui, study: &Study, screen: &Screen<'_>, noticed: &mut String) {
+/// Every text that a participant may meet.
+pub(super) fn texts(study: &Study) -> Vec<&str> {
+    study.wording.all().chain([study.consent.text.as_str(), ENDED]).collect()
+}
+
+/// A screen of text for a participant of `arm`. `noticed` is what is being typed where words are asked for.
+pub(super) fn text(ui: &mut Ui, study: &Study, arm: &str, screen: &Screen<'_>, noticed: &mut String) {
+    let [instructions, practice, ready] = study.wording.before_trials(study.viewing(arm));
     let (words, keys) = (&study.wording, &study.wording.hints);
     column(ui, |ui| match screen {
         Screen::Consent => {
@@ -87,9 +102,9 @@ pub(super) fn text(ui: &mut Ui, study: &Study, screen: &Screen<'_>, noticed: &mu
             body(
                 ui,
                 match page {
-                    Page::Instructions => &words.instructions,
-                    Page::Practice => &words.practice,
-                    Page::Ready => &words.ready,
+                    Page::Instructions => instructions,
+                    Page::Practice => practice,
+                    Page::Ready => ready,
                     Page::Check => &words.check,
                 },
             );
@@ -127,7 +142,7 @@ pub(super) fn text(ui: &mut Ui, study: &Study, screen: &Screen<'_>, noticed: &mu
             );
         }
         Screen::End(outcome) => {
-            body(ui, if *outcome == Outcome::Completed { &words.end } else { "The session has ended. Thank you." });
+            body(ui, if *outcome == Outcome::Completed { &words.end } else { ENDED });
         }
         Screen::Fixation | Screen::Picture(_) | Screen::Gap => {}
     });
@@ -145,12 +160,21 @@ pub(super) fn abort_notice(ui: &Ui) {
     line_at_the_foot(ui, "Experimenter: F10 ends this session. Any other key goes on.");
 }
 
+/// A line in the middle of the window, over what is there.
+pub(super) fn line_in_the_middle(ui: &Ui, text: &str) {
+    line_at(ui, text, ui.ctx().content_rect().center().y);
+}
+
 fn line_at_the_foot(ui: &Ui, text: &str) {
+    line_at(ui, text, ui.ctx().content_rect().bottom() - 24.0);
+}
+
+fn line_at(ui: &Ui, text: &str, middle: f32) {
     let screen = ui.ctx().content_rect();
     let font = TextStyle::Small.resolve(ui.style());
     let painter = ui.painter();
     let galley = painter.layout_no_wrap(text.to_owned(), font, INK);
-    let corner = egui::pos2(screen.center().x - galley.size().x / 2.0, screen.bottom() - galley.size().y - 12.0);
+    let corner = egui::pos2(screen.center().x - galley.size().x / 2.0, middle - galley.size().y / 2.0);
     let back = egui::Rect::from_min_size(corner, galley.size()).expand(6.0);
     painter.rect_filled(back, 0.0, BACKGROUND);
     painter.galley(corner, galley, INK);
@@ -165,13 +189,13 @@ pub(super) enum SetUp {
     Begin,
 }
 
-/// The experimenter's screen. It never names the arm.
+/// The experimenter's screen. It never names the arm, nor what the study is about: the participant may be looking.
 pub(super) fn set_up(ui: &mut Ui, study: &Study, form: &mut Form, facts: &str, problem: &str) -> SetUp {
     let mut act = SetUp::Stay;
     let frame = egui::Frame::central_panel(ui.style()).inner_margin(32.0);
     egui::CentralPanel::default().frame(frame).show(ui, |ui| {
         egui::ScrollArea::vertical().show(ui, |ui| {
-            ui.heading(&study.title);
+            ui.heading(format!("Study {}", study.id)); // its title may say what it is about
             ui.label(RichText::new(facts).small());
             egui::Grid::new("set-up").num_columns(2).spacing([16.0, 6.0]).show(ui, |ui| {
                 let mut field = |label: &str, text: &mut String, hint: &str| {
@@ -210,4 +234,42 @@ pub(super) fn message(ui: &mut Ui, heading: &str, text: &str) {
         ui.heading(heading);
         body(ui, text);
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Relative luminance of an sRGB grey and the contrast of two colours (WCAG 2.2, success criterion 1.4.3).
+    fn contrast(one: Color32, other: Color32) -> f64 {
+        let luminance = |colour: Color32| {
+            let linear = |code: u8| {
+                let code = f64::from(code) / 255.0;
+                if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+            };
+            0.2126 * linear(colour.r()) + 0.7152 * linear(colour.g()) + 0.0722 * linear(colour.b())
+        };
+        let (a, b) = (luminance(one), luminance(other));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn every_text_has_a_contrast_of_4_5_at_least() {
+        assert!((contrast(Color32::WHITE, Color32::BLACK) - 21.0).abs() < 1e-9);
+        let context = egui::Context::default();
+        style(&context);
+        let visuals = &context.global_style().visuals;
+        let (ink, hint) = (visuals.text_color(), visuals.weak_text_color());
+        for (text, back) in [
+            (ink, BACKGROUND),
+            (ink, visuals.extreme_bg_color),
+            (hint, visuals.extreme_bg_color),
+            (ink, visuals.panel_fill),
+        ] {
+            assert!(contrast(text, back) >= 4.5, "{text:?} on {back:?}: {}", contrast(text, back));
+        }
+        for widget in [&visuals.widgets.inactive, &visuals.widgets.hovered, &visuals.widgets.active] {
+            assert!(contrast(ink, widget.weak_bg_fill) >= 4.5, "{widget:?}");
+        }
+    }
 }

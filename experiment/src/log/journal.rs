@@ -9,6 +9,7 @@ use stimuli::Sha256;
 
 use super::{AppendFile, Identity};
 use crate::clock::Utc;
+use crate::display::Display;
 use crate::error::{Error, Result};
 use crate::session::{Done, Outcome, Record};
 use crate::setup::Conditions;
@@ -28,6 +29,14 @@ pub enum Event {
     Conditions {
         /// Names with their units, and values.
         conditions: Conditions,
+    },
+    /// What was found about the display.
+    Display {
+        /// Everything.
+        display: Display,
+        /// Universal time of the session's zero second, microseconds since the start of 1970: with it, somebody who
+        /// watched the screen from outside can hold their clock against this one.
+        zero_unix_us: u64,
     },
     /// It was taken up again.
     Resumed {
@@ -93,7 +102,11 @@ impl Event {
     /// What this event says about how far the session came.
     pub(super) fn mark(&self, done: &mut Done) {
         match self {
-            Self::Started { .. } | Self::Conditions { .. } | Self::Resumed { .. } | Self::Row { .. } => {}
+            Self::Started { .. }
+            | Self::Conditions { .. }
+            | Self::Display { .. }
+            | Self::Resumed { .. }
+            | Self::Row { .. } => {}
             Self::Consent { agreed } => done.consent = Some(*agreed),
             Self::PairStarts { trial, .. } => {
                 done.started.insert(*trial);
@@ -189,6 +202,15 @@ impl Journal {
         self.last = Sha256::of(text.as_bytes());
         Ok(())
     }
+}
+
+/// The whole lines of a journal, which is left as it is.
+///
+/// # Errors
+/// If it cannot be read, or a line does not follow from the one before it.
+pub fn read_journal(path: &Path) -> Result<Vec<Line>> {
+    let text = std::fs::read_to_string(path).map_err(Error::io("read", path))?;
+    read(&text[..text.rfind('\n').map_or(0, |end| end + 1)], path)
 }
 
 /// The lines of a journal, each checked against the one before it.

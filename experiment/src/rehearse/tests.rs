@@ -1,12 +1,16 @@
 use std::path::Path;
 
-use analysis::trial_log::{Phase, Reader, Trial as Row};
+use analysis::trial_log::{Interval, Phase, Reader, Trial as Row};
 use stimuli::{Sha256, Study};
 
 use super::*;
+use crate::design::Plan;
 use crate::enrol::{DataFolder, Kind};
 use crate::example;
 use crate::observer::Eye;
+use crate::script;
+use crate::session::Step;
+use crate::trial::Trial;
 
 fn rehearse(folder: &Path, study: &Study, participants: u32, eye: Eye, leaves: f64) -> Vec<Row> {
     let kind = Kind::Simulated { times: 1 };
@@ -15,7 +19,7 @@ fn rehearse(folder: &Path, study: &Study, participants: u32, eye: Eye, leaves: f
     for i in 0..participants {
         let participant = format!("sim-{i:04}");
         let Ok(begun) = Conductor::begin(study, &data, &participant, NO_DISPLAY) else { break };
-        let mut observer = Observer::new(eye, leaves, study.seed, &participant);
+        let mut observer = Observer::new(eye.clone(), leaves, study.seed, &participant);
         let mut conductor = begun.conductor;
         run(&mut conductor, &mut observer, &mut Time::Jumps { now_s: 0.0 }, &mut |_| {}).unwrap();
         let folder = data.session_folder(&participant);
@@ -73,6 +77,38 @@ fn a_guesser_is_right_half_the_time_and_an_eagle_always() {
     assert!((guessed as f64 - of as f64 / 2.0).abs() < 4.5 * (of as f64 / 4.0).sqrt(), "{guessed} of {of}");
     let (seen, of) = right(Eye::Threshold { sees: 1.0 });
     assert_eq!(seen, of);
+}
+
+/// One JOD apart is told right three times in four, none half the time, and who always lapses guesses. 400 trials each,
+/// within 4.5 standard errors: one right program in 150,000 would fail; the seeds are fixed.
+#[test]
+fn a_metrics_jod_are_proportions_correct() {
+    let study = example::study(400);
+    let right = |jod: f64, lapses: f64| {
+        let eye = Eye::metric(&format!("{{\"a_cbq\": {jod}, \"b_cbq\": {jod}}}")).unwrap();
+        let plan = Plan::draw(&study, 1);
+        let mut answers = Vec::new();
+        for slot in plan.slots.iter().filter(|slot| slot.arm == "HQ/CBQ") {
+            let steps = script::steps(&study, slot);
+            let critical = steps.iter().find_map(|step| match step {
+                Step::Trial(trial) if trial.phase == Phase::Critical => Some(trial.clone()),
+                _ => None,
+            });
+            let trial = Trial::new(critical.unwrap(), study.timing.clone());
+            let code = format!("sim-{}", slot.number);
+            let mut observer = Observer::new(eye.clone(), 0.0, 7, &code).lapsing(lapses);
+            let Act::Press(keys) = observer.act(&Screen::Worse, Some(&trial)).act else { panic!() };
+            let said = if keys == [Key::Digit(1)] { Interval::First } else { Interval::Second };
+            answers.push(trial.plan().worse() == Some(said));
+        }
+        assert_eq!(answers.len(), 400);
+        answers.iter().filter(|&&right| right).count() as f64 / 400.0
+    };
+    for (jod, lapses, expected) in [(0.0, 0.0, 0.5), (1.0, 0.0, 0.75), (2.0, 0.0, 0.911), (2.0, 1.0, 0.5)] {
+        let found = right(jod, lapses);
+        assert!((found - expected).abs() < 4.5 * (expected * (1.0 - expected) / 400.0_f64).sqrt(), "{jod}: {found}");
+    }
+    assert!(Eye::metric("{\"a\": -1}").is_err() && Eye::metric("[]").is_err());
 }
 
 #[test]

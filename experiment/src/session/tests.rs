@@ -2,6 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::design::Plan;
+use crate::draw::Draws;
 use crate::{example, script};
 
 const FRAME: f64 = 1.0 / 60.0;
@@ -50,9 +51,9 @@ impl Driver {
     }
 
     fn frame(&mut self) {
-        self.input(Input::Swapped { at_s: self.now, frame_s: FRAME });
-        self.input(Input::Frame { shows_s: self.now + FRAME, frame_s: FRAME });
         self.now += FRAME;
+        self.input(Input::Frame { shows_s: self.now, frame_s: FRAME });
+        self.input(Input::Swapped { at_s: self.now, frame_s: FRAME });
     }
 
     /// One frame and, where a screen waits, the key that it waits for.
@@ -116,6 +117,7 @@ fn a_session_goes_through_every_step_and_saves_in_order() {
 #[test]
 fn nothing_is_shown_before_its_record_is_saved() {
     let (mut session, _) = begin();
+    session.step(Input::Frame { shows_s: 0.0, frame_s: FRAME });
     session.step(Input::Swapped { at_s: 0.0, frame_s: FRAME });
     let effect = session.step(Input::Key { key: Key::Digit(1), now_s: 1.0 });
     assert_eq!(effect, Effect::Save(Record::Consent(true)));
@@ -136,6 +138,7 @@ fn nothing_is_shown_before_its_record_is_saved() {
 #[test]
 fn a_full_disk_stops_the_session_until_it_can_save() {
     let (mut session, _) = begin();
+    session.step(Input::Frame { shows_s: 0.0, frame_s: FRAME });
     session.step(Input::Swapped { at_s: 0.0, frame_s: FRAME });
     session.step(Input::Key { key: Key::Digit(1), now_s: 1.0 });
     session.step(Input::NotSaved("no space left".to_owned()));
@@ -179,6 +182,40 @@ fn one_escape_marks_a_trial_and_ends_nothing() {
     let trials = driver.trials();
     assert_eq!(trials[0], (1, vec![Interruption::Escape]));
     assert!(trials[1..].iter().all(|(_, interruptions)| interruptions.is_empty()));
+}
+
+/// 500 sessions, each disturbed once, at a moment that the seed decides: one Escape, one theft of the keyboard, one press of
+/// the window's close button, one cover over it. Every one goes through to its end with every row.
+#[test]
+fn no_single_disturbance_ends_a_session() {
+    let what = [Interruption::Escape, Interruption::FocusLost, Interruption::CloseRequested, Interruption::Occluded];
+    let mut marked = 0;
+    for seed in 0..500 {
+        let mut draws = Draws::new(seed, "disturbance");
+        let (steps, _) = steps();
+        let timing = Timing { fixation_s: 0.1, interval_s: 0.3, gap_s: 0.1 };
+        let mut driver = Driver::new(Session::begin(steps, timing));
+        let (mut left, what) = (draws.below(150), what[draws.below(4) as usize]);
+        while !is_end(&driver.session.screen()) {
+            driver.go_on();
+            if left == 0 {
+                if what == Interruption::Escape {
+                    driver.press(Key::Escape);
+                    driver.input(Input::Released(Key::Escape));
+                } else {
+                    driver.input(Input::Interrupted(what));
+                }
+            }
+            left = left.wrapping_sub(1);
+        }
+        assert_eq!(driver.session.screen(), Screen::End(Outcome::Completed), "{what:?} in session {seed}");
+        let trials = driver.trials();
+        assert_eq!(trials.len(), 3);
+        let found: Vec<_> = trials.into_iter().flat_map(|(_, interruptions)| interruptions).collect();
+        assert!(found.is_empty() || found == [what]);
+        marked += found.len();
+    }
+    assert!(marked > 250, "most of a session is trials: {marked}");
 }
 
 #[test]

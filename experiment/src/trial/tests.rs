@@ -19,6 +19,12 @@ fn timing() -> Timing {
     Timing { fixation_s: 1.0, interval_s: 6.0, gap_s: 0.5 }
 }
 
+/// Draws the present screen and hands it over.
+fn seen(trial: &mut Trial, at_s: f64) {
+    trial.frame(f64::NEG_INFINITY, FRAME);
+    trial.swapped(at_s, FRAME);
+}
+
 /// Shows frames until a question stands; returns the time.
 fn show(trial: &mut Trial, mut now: f64) -> f64 {
     while !matches!(trial.moment(), Moment::Count(_) | Moment::Worse | Moment::Confidence | Moment::Done) {
@@ -38,14 +44,14 @@ fn a_trial_shows_both_pictures_for_their_time_and_asks_in_order() {
     for key in [Key::Digit(1), Key::Digit(2), Key::Backspace, Key::Enter] {
         trial.key(key, now);
     }
-    trial.swapped(now, FRAME);
+    seen(&mut trial, now);
     for key in [Key::Digit(4), Key::Enter] {
         trial.key(key, now);
     }
     assert_eq!(trial.moment(), Moment::Worse);
-    trial.swapped(now, FRAME);
+    seen(&mut trial, now);
     trial.key(Key::Digit(2), now + 1.25);
-    trial.swapped(now, FRAME);
+    seen(&mut trial, now);
     trial.key(Key::Digit(4), now);
     assert!(trial.is_over());
     let seen = trial.observed();
@@ -64,7 +70,7 @@ fn what_has_no_time_is_not_shown() {
     let none = Timing { fixation_s: 0.0, interval_s: 1.0, gap_s: 0.0 };
     let mut trial = Trial::new(plan(Asks::default()), none);
     assert_eq!(trial.moment(), Moment::Picture(Interval::First));
-    trial.swapped(0.0, FRAME);
+    seen(&mut trial, 0.0);
     trial.frame(1.0, FRAME);
     assert_eq!(trial.moment(), Moment::Picture(Interval::Second));
     trial.swapped(1.0, FRAME);
@@ -76,10 +82,26 @@ fn what_has_no_time_is_not_shown() {
     assert_eq!(trial.observed().second.unwrap().duration_s, Some(1.0));
 }
 
+/// The swap that returns after a key shows the screen from before that key: neither does it start the next question's
+/// response time, nor may a key answer that question yet.
+#[test]
+fn a_question_is_seen_one_frame_after_the_key_that_brought_it() {
+    let mut trial = Trial::new(plan(Asks { counts: false, ..ALL }), timing());
+    let now = show(&mut trial, 0.0);
+    trial.key(Key::Digit(1), now);
+    assert_eq!(trial.moment(), Moment::Confidence);
+    trial.swapped(now, FRAME);
+    assert!(!trial.is_shown());
+    trial.key(Key::Digit(4), now);
+    assert_eq!(trial.moment(), Moment::Confidence);
+    seen(&mut trial, now + FRAME);
+    assert!(trial.is_shown());
+}
+
 #[test]
 fn a_broken_trial_keeps_what_was_seen() {
     let mut trial = Trial::new(plan(ALL), timing());
-    trial.swapped(0.0, FRAME);
+    seen(&mut trial, 0.0);
     trial.frame(1.0, FRAME);
     trial.swapped(1.0, FRAME);
     trial.swapped(3.0, FRAME);

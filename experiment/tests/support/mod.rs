@@ -34,6 +34,12 @@ pub(crate) fn write_study(folder: &Path, edit: impl FnOnce(String) -> String) ->
     study
 }
 
+/// How often a test does what it does: few times in every run of the tests, as often as the environment says for a figure.
+#[allow(dead_code, reason = "not every test file repeats anything")]
+pub(crate) fn times(name: &str, otherwise: u32) -> u32 {
+    std::env::var(name).map_or(otherwise, |times| times.parse().expect("a whole number of times"))
+}
+
 /// Every pixel differs from its neighbours, and every picture from the others: a shift by one pixel, a filter or a wrong
 /// picture cannot pass unseen.
 pub(crate) fn picture(width: u32, height: u32, number: u32) -> RgbImage {

@@ -95,9 +95,55 @@ pub struct Wording {
     pub end: String,
     /// Shown on every screen of a demonstration.
     pub demo_notice: String,
+    /// The texts of arms without a task; none where every arm counts.
+    #[serde(default)]
+    pub free: Option<FreeWording>,
     /// Which key does what.
     #[serde(default)]
     pub hints: Hints,
+}
+
+impl Wording {
+    /// Instructions, the text before practice, and the text before the critical trial, for an arm.
+    #[must_use]
+    pub fn before_trials(&self, viewing: Viewing) -> [&str; 3] {
+        match (viewing, &self.free) {
+            (Viewing::Free, Some(free)) => [&free.instructions, &free.practice, &free.ready],
+            _ => [&self.instructions, &self.practice, &self.ready],
+        }
+    }
+
+    /// Every text.
+    pub fn all(&self) -> impl Iterator<Item = &str> {
+        let own = [
+            &self.instructions,
+            &self.practice,
+            &self.ready,
+            &self.count_first,
+            &self.count_second,
+            &self.worse,
+            &self.noticed,
+            &self.known_task,
+            &self.check,
+            &self.end,
+            &self.demo_notice,
+        ];
+        let free = self.free.iter().flat_map(|free| [&free.instructions, &free.practice, &free.ready]);
+        own.into_iter().chain(self.confidence.iter()).chain(free).chain(self.hints.all()).map(String::as_str)
+    }
+}
+
+/// What the participants of an arm read who have nothing to count. As little as the others may they learn that quality
+/// is what the study is about.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FreeWording {
+    /// What they do.
+    pub instructions: String,
+    /// Before the practice trials.
+    pub practice: String,
+    /// Between practice and the critical trial.
+    pub ready: String,
 }
 
 /// The short lines under a screen that say which key does what. The keys are fixed, these words are not.
@@ -145,6 +191,13 @@ impl Default for Hints {
     }
 }
 
+impl Hints {
+    fn all(&self) -> [&String; 10] {
+        let Self { go_on, agree, decline, count, first, second, confidence, noticed, yes, no } = self;
+        [go_on, agree, decline, count, first, second, confidence, noticed, yes, no]
+    }
+}
+
 /// What is counted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -178,6 +231,20 @@ pub struct Arm {
     pub qualities: [String; 2],
     /// Participants; a multiple of 4 fills the cells evenly.
     pub n: u32,
+    /// What they do while they look: they count, unless it is said here.
+    #[serde(default)]
+    pub viewing: Viewing,
+}
+
+/// What the participants of an arm do while they look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Viewing {
+    /// They count items.
+    #[default]
+    Task,
+    /// They look, and are asked nothing about items.
+    Free,
 }
 
 impl Arm {

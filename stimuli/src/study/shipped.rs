@@ -3,10 +3,49 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::{Layout, Study};
+use super::{Layout, Study, Viewing};
 
 fn corridor() -> Study {
     Study::load(&PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("corridor")).unwrap()
+}
+
+/// The pre-studies show pictures of the main study and nothing else, count or do not count as they say, and hand out the
+/// cells of order and layout evenly.
+#[test]
+fn the_pre_studies_show_the_main_studys_pictures() {
+    let main = corridor();
+    for (file, viewing) in [("free_viewing.toml", Viewing::Free), ("six_seconds.toml", Viewing::Task)] {
+        let study = Study::load(&main.folder.join(file)).unwrap();
+        assert_ne!((&study.id, study.seed), (&main.id, main.seed));
+        let known = main.stimuli();
+        for stimulus in study.stimuli() {
+            assert!(known.contains(&stimulus), "{file} shows {}", stimulus.id());
+            assert_eq!(study.request(&stimulus), main.request(&stimulus));
+        }
+        assert!(study.arms.iter().all(|arm| arm.viewing == viewing && arm.n % 4 == 0), "{file}");
+        assert_eq!((&study.timing, &study.display), (&main.timing, &main.display));
+    }
+}
+
+/// Until the critical answer nothing that a participant reads mentions quality or rendering; of free viewing it does not
+/// mention counting either.
+#[test]
+fn nothing_gives_the_purpose_away() {
+    let folder = corridor().folder;
+    for file in ["study.toml", "free_viewing.toml", "six_seconds.toml"] {
+        let study = Study::load(&folder.join(file)).unwrap();
+        for arm in &study.arms {
+            let mut texts = study.wording.before_trials(arm.viewing).to_vec();
+            texts.extend([study.consent.text.as_str(), &study.wording.count_first, &study.wording.count_second]);
+            texts.push(&study.wording.demo_notice);
+            for text in texts {
+                let lower = text.to_lowercase();
+                assert!(!["quality", "render", "computer"].iter().any(|word| lower.contains(word)), "{file}: {text}");
+            }
+        }
+    }
+    let free = Study::load(&folder.join("free_viewing.toml")).unwrap();
+    assert!(!free.consent.text.contains("count"));
 }
 
 /// The names that a scene file gives to the items it places: `!xform -n NAME ... items/FILE.rad`.

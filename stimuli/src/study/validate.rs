@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::{Component, Path};
 
 use super::locate::Step;
-use super::{AnalysisPlan, Layout, Practice, Quality, Stimulus, Study};
+use super::{AnalysisPlan, Layout, Practice, Quality, Stimulus, Study, Viewing};
 
 /// Something wrong, and where.
 pub(super) struct Problem {
@@ -139,6 +139,12 @@ fn texts(study: &Study, found: &mut Problems) {
     ] {
         found.text(&[Key("wording"), Key(key)], text);
     }
+    if let Some(free) = &wording.free {
+        for (key, text) in [("instructions", &free.instructions), ("practice", &free.practice), ("ready", &free.ready)]
+        {
+            found.text(&[Key("wording"), Key("free"), Key(key)], text);
+        }
+    }
     found.text(&[Key("consent"), Key("version")], &study.consent.version);
     found.text(&[Key("consent"), Key("text")], &study.consent.text);
 }
@@ -202,6 +208,10 @@ fn check_references(study: &Study, found: &mut Problems) {
             check_quality_name(study, &[Key("arms"), Index(i), Key("qualities"), Index(j)], name, found);
         }
         found.number(&[Key("arms"), Index(i), Key("n")], f64::from(arm.n), 1.0, true);
+        if arm.viewing == Viewing::Free && study.wording.free.is_none() {
+            let help = "Add [wording.free] with instructions, practice and ready.";
+            found.add(&[Key("arms"), Index(i), Key("viewing")], "there are no texts for free viewing", help);
+        }
         let ranks = arm.qualities.each_ref().map(|name| study.quality(name).map(|quality| quality.rank));
         if arm.has_right_answer() && ranks[0].is_some() && ranks[0] == ranks[1] {
             let help = "Give different ranks to two qualities that are compared: else no answer is right.";
