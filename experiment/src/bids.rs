@@ -131,7 +131,7 @@ fn write_all(
         write(&file("beh.tsv"), &trials(&session.rows))?;
         write_json(&file("beh.json"), &trials_sidecar(study, task, session))?;
         write(&file("events.tsv"), &events(&session.rows))?;
-        write_json(&file("events.json"), &events_sidecar(study, task, session))?;
+        write_json(&file("events.json"), &events_sidecar(study, session))?;
     }
     write(&to.join("participants.tsv"), &participants)?;
     write_json(
@@ -204,7 +204,6 @@ fn presentation(study: &Study, session: &Session) -> Value {
         "OperatingSystem": std::env::consts::OS,
         "SoftwareName": "crex-session",
         "SoftwareVersion": VERSION,
-        "Code": format!("plan {}", session.rows.first().map_or(NONE, |row| row.plan_hash.as_str())),
         "ScreenDistance": or_none(metres("distance_mm").map(|metres| json!(metres))),
         "ScreenRefreshRate": or_none(session.refresh_hz.map(|hz| json!(hz))),
         "ScreenResolution": [display.width_px, display.height_px],
@@ -213,19 +212,14 @@ fn presentation(study: &Study, session: &Session) -> Value {
     })
 }
 
-fn common(study: &Study, task: &str, session: &Session) -> Map<String, Value> {
+fn trials_sidecar(study: &Study, task: &str, session: &Session) -> Value {
     let mut fields = Map::new();
-    fields.insert("TaskName".to_owned(), json!(task));
-    fields.insert("TaskDescription".to_owned(), json!(study.title));
     let arm = session.rows.first().map_or("", |row| row.arm.as_str());
     let instructions = study.wording.before_trials(study.viewing(arm))[0].trim();
+    fields.insert("TaskName".to_owned(), json!(task));
+    fields.insert("TaskDescription".to_owned(), json!(study.title));
     fields.insert("Instructions".to_owned(), json!(instructions));
     fields.insert("StimulusPresentation".to_owned(), presentation(study, session));
-    fields
-}
-
-fn trials_sidecar(study: &Study, task: &str, session: &Session) -> Value {
-    let mut fields = common(study, task, session);
     for column in &COLUMNS {
         let mut meaning = json!({ "Description": format!("{} ({})", column.meaning, column.values) });
         if !column.unit.is_empty() {
@@ -236,8 +230,9 @@ fn trials_sidecar(study: &Study, task: &str, session: &Session) -> Value {
     Value::Object(fields)
 }
 
-fn events_sidecar(study: &Study, task: &str, session: &Session) -> Value {
-    let mut fields = common(study, task, session);
+fn events_sidecar(study: &Study, session: &Session) -> Value {
+    let mut fields = Map::new();
+    fields.insert("StimulusPresentation".to_owned(), presentation(study, session));
     let source = "from the session's start; where it comes from is `onset_source` of the trials' table";
     for (name, meaning) in [
         ("onset", json!({ "Description": source, "Units": "s" })),

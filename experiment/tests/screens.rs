@@ -79,9 +79,9 @@ impl Lab {
 /// Everything that the screen says.
 fn said(harness: &Harness<'_, Desk<'_>>) -> String {
     let nodes = harness.root().children_recursive();
-    let words = nodes.filter_map(|node| {
+    let words = nodes.map(|node| {
         let node = node.accesskit_node();
-        Some(format!("{} {}", node.label().unwrap_or_default(), node.value().unwrap_or_default()))
+        format!("{} {}", node.label().unwrap_or_default(), node.value().unwrap_or_default())
     });
     words.collect::<Vec<_>>().join("\n")
 }

@@ -95,8 +95,8 @@ fn short(text: String) -> String {
 /// Confirms the set-up: one field after the other by Tab, then the box, then Enter.
 fn set_up(screen: &Screen, data: &Path) -> Result<(), Failed> {
     until("the set-up takes a confirmation", || {
-        // Backwards from the code's field: the button, then the box.
-        for key in ["shift+Tab", "shift+Tab", "space", "Return"] {
+        // Escape leaves whatever has the focus, and the code's field takes it; backwards from there: the button, the box.
+        for key in ["Escape", "shift+Tab", "shift+Tab", "space", "Return"] {
             std::thread::sleep(Duration::from_millis(300));
             screen.key(key);
         }
@@ -382,10 +382,10 @@ fn self_test() -> Result<(), Failed> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_crex-session"));
     command.arg(&study).args(["--self-test", "--json"]).env("DISPLAY", &screen.name).env_remove("WAYLAND_DISPLAY");
     let output = command.output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
     let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(found["verdict"], "demonstrations_only", "{found:#}");
+    // A machine that is busy with other things may be fit for nothing; it is never fit for a main study.
+    assert_eq!(output.status.success(), found["verdict"] == "demonstrations_only", "{found:#}");
+    assert!(found["reasons"].to_string().contains("unverified"), "{found:#}");
     assert_eq!(found["display"]["refresh"]["hz"], serde_json::Value::Null);
     assert_eq!(found["display"]["pixels"]["differing_bytes"], 0);
     assert_eq!(found["intervals"], 20);

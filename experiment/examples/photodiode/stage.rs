@@ -29,7 +29,7 @@ impl Stage {
         let mut manager = Command::new("openbox");
         manager.env("DISPLAY", &stage.name).stdout(Stdio::null()).stderr(Stdio::null());
         stage.children.push(manager.spawn()?);
-        std::thread::sleep(std::time::Duration::from_secs(1));
+        std::thread::sleep(std::time::Duration::from_secs(3));
         Ok(stage)
     }
 }

@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use x11rb::connection::Connection;
-use x11rb::protocol::xproto::{ConnectionExt, CreateWindowAux, ImageFormat, InputFocus, WindowClass};
+use x11rb::protocol::xproto::{AtomEnum, ConnectionExt, CreateWindowAux, ImageFormat, InputFocus, WindowClass};
 use x11rb::rust_connection::RustConnection;
 
 /// Ends its process with itself.
@@ -17,6 +17,21 @@ impl Drop for Kept {
         let _gone = self.0.kill();
         let _status = self.0.wait();
     }
+}
+
+/// A window that is there before its manager gets no keyboard: waits until the manager has said that it manages.
+fn wait_for_manager(display: &str) {
+    let (connection, screen) = RustConnection::connect(Some(display)).unwrap();
+    let root = connection.setup().roots[screen].root;
+    let name = connection.intern_atom(false, b"_NET_SUPPORTING_WM_CHECK").unwrap().reply().unwrap().atom;
+    for _ in 0..600 {
+        let asked = connection.get_property(false, root, name, AtomEnum::WINDOW, 0, 1).unwrap();
+        if asked.reply().unwrap().length > 0 {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    panic!("the window manager does not come up");
 }
 
 /// An X server with a window manager; without one a window cannot fill the screen.
@@ -38,6 +53,7 @@ impl Screen {
         let mut manager = Command::new("openbox");
         manager.env("DISPLAY", &name).stdout(Stdio::null()).stderr(Stdio::null());
         let manager = Kept(manager.spawn().unwrap());
+        wait_for_manager(&name);
         Self { name, _manager: manager, _server: server }
     }
 
