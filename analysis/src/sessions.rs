@@ -1,6 +1,6 @@
 //! Logs to sessions: one pass, one row in memory, and every row held against those before it.
 //!
-//! Beside the row at hand only some eighty bytes a session are kept, to tell a session or a participant that comes twice.
+//! Beside the row at hand only some hundred bytes a session are kept, to tell a session or a participant that comes twice.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fs::File;

@@ -2,7 +2,7 @@
 
 use super::Report;
 use super::arm::{ArmReport, Tests};
-use super::numbers::{p_value, percent, short};
+use super::numbers::{p_value, percent, range, short};
 use super::plot::{self, Figure, Row};
 use super::sources;
 use super::words::{self, Finding};
@@ -165,10 +165,6 @@ fn row(arm: &str, what: &str, k: u64, n: u64, tests: &Tests) -> Vec<String> {
         None => cells.extend([const { String::new() }; 3]),
     }
     cells
-}
-
-fn range([low, high]: [f64; 2]) -> String {
-    format!("[{low:.3}, {high:.3}]")
 }
 
 /// A number to three digits after the point; what everybody or nobody answered lies beyond any.

@@ -37,10 +37,26 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// Two ends of an interval in percent.
+/// Two ends of an interval in percent, with as many digits as they need to differ.
 #[must_use]
 pub fn percent_range([low, high]: [f64; 2]) -> String {
+    let digits = digits_of(100.0 * (high - low), 1);
+    if digits > 1 && low >= 5e-4 && high <= 1.0 - 5e-4 {
+        return format!("{:.digits$} % to {:.digits$} %", 100.0 * low, 100.0 * high);
+    }
     format!("{} to {}", percent(low), percent(high))
+}
+
+/// Two ends of an interval between 0 and 1, with three digits or as many as they need to differ.
+#[must_use]
+pub fn range([low, high]: [f64; 2]) -> String {
+    let digits = digits_of(high - low, 3);
+    format!("[{low:.digits$}, {high:.digits$}]")
+}
+
+/// Digits after the point that show a width, at least `least`.
+fn digits_of(width: f64, least: usize) -> usize {
+    if width > 0.0 { (1.0 - width.log10().floor()).clamp(least as f64, 12.0) as usize } else { least }
 }
 
 /// A number to about four digits.
@@ -93,6 +109,15 @@ mod tests {
         assert_eq!(percent(3.7e-9), "3.7e-7 %");
         assert_eq!(percent(1.0 - 1e-6), "(100 - 1.0e-4) %");
         assert_eq!(percent_range([0.25, 0.75]), "25.0 % to 75.0 %");
+    }
+
+    #[test]
+    fn the_ends_of_an_interval_differ() {
+        assert_eq!(percent_range([0.499_97, 0.500_032]), "49.9970 % to 50.0032 %");
+        assert_eq!(percent_range([0.0, 3.7e-9]), "0.0 % to 3.7e-7 %");
+        assert_eq!(percent_range([0.5, 0.5]), "50.0 % to 50.0 %");
+        assert_eq!(range([0.298_8, 0.802_5]), "[0.299, 0.802]");
+        assert_eq!(range([0.499_97, 0.500_032]), "[0.499970, 0.500032]");
     }
 
     #[test]

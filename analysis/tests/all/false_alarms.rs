@@ -50,6 +50,7 @@ fn agrees(what: &str, seed: u64, size: f64, mut rejects: impl FnMut(&mut Draws) 
     let mut found = Proportion::default();
     (0..EXPERIMENTS).for_each(|_| found.count(rejects(&mut draws)));
     let [low, high] = clopper_pearson(found, 0.999);
+    println!("{what}: {found} simulated, 99.9 % interval {low:.4} to {high:.4}, exact {size:.4}");
     assert!(low <= size && size <= high, "{what}: {found} simulated, size {size}");
     found.value().unwrap()
 }
@@ -209,7 +210,8 @@ fn a_true_curve_is_rarely_said_not_to_fit() {
         let (_, deviance, df) = likeliest(&levels, Family::Logistic).unwrap();
         rejected.count(ChiSquare::from_statistic(deviance, df).p < ALPHA);
     }
-    let [low, _] = clopper_pearson(rejected, 0.999);
+    let [low, high] = clopper_pearson(rejected, 0.999);
+    println!("deviance of a true curve: {rejected} simulated, 99.9 % interval {low:.4} to {high:.4}, stated {ALPHA}");
     assert!(low <= ALPHA, "{rejected}");
 }
 

@@ -50,7 +50,10 @@ pub fn intervals(rows: &[Row], bound: Option<f64>, level: f64, narrow: bool) -> 
             canvas.dot(class, [x.at(share), y], 5.5);
         }
         canvas.text(if row.main { "label strong" } else { "label" }, [8.0, y + 4.0], Anchor::Start, &row.label);
-        canvas.text("tick", [width - 80.0, y + 4.0], Anchor::Start, &format!("{}", row.counts));
+        // Very large counts would not fit beside the drawing; the table has them.
+        let counts = Some(row.counts.to_string()).filter(|text| text.len() <= 13);
+        let counts = counts.or_else(|| share.map(percent)).unwrap_or_default();
+        canvas.text("tick", [width - 80.0, y + 4.0], Anchor::Start, &counts);
         let share = share.map(percent).unwrap_or_default();
         said.push(format!("{}: {}, {share}, interval {}", row.label, row.counts, percent_range(row.interval)));
     }
