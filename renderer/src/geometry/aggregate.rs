@@ -9,11 +9,11 @@ use std::time::Duration;
 
 use glam::{DVec3, Vec3A};
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::node::Bvh2Node;
-use obvhs::{BvhBuildParams, aabb::Aabb, ray::RayHit};
+use obvhs::{BvhBuildParams, aabb::Aabb};
 
 use super::outliers::outliers;
 use super::shape::{Probe, Shape};
+use super::wide::{Pair, Wide};
 use super::{Hit, Ray, SurfaceId};
 use crate::math::tolerance;
 
@@ -58,7 +58,7 @@ pub enum Shadow {
 
 /// The shapes of a scene, ready for rays. Shared freely between threads.
 pub struct Aggregate {
-    bvh: Bvh2,
+    bvh: Wide,
     /// Those of the hierarchy in its order, then the outliers.
     items: Vec<Item>,
     /// How many are in the hierarchy.
@@ -106,6 +106,14 @@ impl Aggregate {
         } else {
             obvhs::bvh2::builder::build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default())
         };
+        let pairs: Vec<Pair> = bvh
+            .nodes
+            .iter()
+            .map(|node| {
+                let Aabb { min: low, max: high } = *node.aabb();
+                Pair { low, high, first: node.first_index, count: node.prim_count }
+            })
+            .collect();
         let order = bvh.primitive_indices.iter().map(|&at| inner[at as usize]).chain(outliers);
         let items: Vec<Item> = order.filter_map(|index| slots[index].take()).collect();
         let has = |passage| items.iter().any(|item| item.passage == passage);
@@ -117,7 +125,7 @@ impl Aggregate {
             has_straight: has(Passage::Straight),
             has_refracting: has(Passage::Refracting),
             items,
-            bvh,
+            bvh: Wide::new(&pairs),
         }
     }
 
@@ -319,27 +327,15 @@ impl Aggregate {
             t_max = visit(slot)?.unwrap_or(t_max);
         }
         let Some(entry) = self.enter(&ray.up_to(t_max)) else { return ControlFlow::Continue(()) };
-        let mut flow = ControlFlow::Continue(());
-        let leaf = |node: &Bvh2Node, ray: &mut obvhs::ray::Ray, _: &mut RayHit| {
-            let first = node.first_index as usize;
-            (first..first + node.prim_count as usize).all(|slot| match visit(slot) {
-                ControlFlow::Continue(limit) => {
-                    if let Some(t) = limit {
-                        ray.tmax = entry.limit(t, self.half_extent);
-                    }
-                    true
+        let obvhs::ray::Ray { origin, inv_direction, tmax, .. } = entry.ray;
+        self.bvh.walk(origin, inv_direction, tmax, |slots, t_max| {
+            for slot in slots {
+                if let Some(t) = visit(slot)? {
+                    *t_max = entry.limit(t, self.half_extent);
                 }
-                ControlFlow::Break(()) => {
-                    flow = ControlFlow::Break(());
-                    false
-                }
-            })
-        };
-        let mut none = RayHit::none();
-        obvhs::fast_stack!(u32, (96, 192), self.bvh.max_depth, stack, {
-            self.bvh.ray_traverse_dynamic(&mut stack, entry.ray, &mut none, leaf);
-        });
-        flow
+            }
+            ControlFlow::Continue(())
+        })
     }
 }
 

@@ -4,6 +4,7 @@ mod aggregate;
 mod hit;
 mod outliers;
 pub mod shape;
+mod wide;
 
 pub use aggregate::{Aggregate, Item, Passage, Shadow};
 pub use hit::{Hit, Ray, SurfaceId};
