@@ -124,7 +124,8 @@ impl eframe::App for Window<'_> {
         if self.desk.asks_for_monitor()
             && let Some(monitor) = frame.winit_window().and_then(|window| window.current_monitor())
         {
-            self.desk.monitor(monitor.name(), monitor.refresh_rate_millihertz());
+            let there = frame.winit_window().map_or(0, |window| window.available_monitors().count());
+            self.desk.monitor(monitor.name(), monitor.refresh_rate_millihertz(), there);
         }
         self.desk.show(ui);
         if let Some(exit) = self.desk.exit() {

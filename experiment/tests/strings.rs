@@ -1,10 +1,11 @@
-//! What other programs read: text of any kind through Python's csv module and pandas, and the BIDS validator. Where one of
-//! them is not installed its test shows as ignored.
+//! What other programs see: text of any kind through Python's csv module and pandas, a dataset through the BIDS validator,
+//! the order of system calls through strace. Where one of them is not installed its test shows as ignored.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod support;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
@@ -23,6 +24,8 @@ fn main() -> ExitCode {
             .with_ignored_flag(!runs(&python, &["--version"])),
         Trial::test("fuzzed_strings_survive_pandas", || strings(PANDAS))
             .with_ignored_flag(!runs(&python, &["-c", "import pandas"])),
+        Trial::test("every_line_is_synced_before_the_next", order_of_calls)
+            .with_ignored_flag(!runs("strace", &["--version"])),
         Trial::test("the_bids_validator_finds_no_error", bids).with_ignored_flag(!runs(&validator(), &["--version"])),
     ];
     libtest_mimic::run(&arguments, trials).exit_code()
@@ -126,4 +129,42 @@ fn session(study: &Path, data: &Path, arguments: &[&str]) -> Result<(), Failed> 
     let output = command.arg(study).args(arguments).arg("--data").arg(data).output()?;
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     if output.status.success() { Ok(()) } else { Err(said.into()) }
+}
+
+/// Every line of rows and journal is on the disk before anything else is written: after each `write` to one of these files
+/// the next call on any of them is its `fdatasync`; and each file was made by a call that fails if it is there.
+fn order_of_calls() -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    let [study, data, trace] = ["study", "data", "trace"].map(|name| folder.path().join(name));
+    support::write_study(&study, |text| text.replace("n = 16", "n = 4"));
+    let calls = "trace=openat,write,fdatasync,fsync,close";
+    let mut command = Command::new("strace");
+    command.args(["-f", "-e", calls, "-s", "16", "-o"]).arg(&trace).arg(env!("CARGO_BIN_EXE_crex-session"));
+    let output = command.arg(&study).args(["--simulate", "1", "--data"]).arg(&data).output()?;
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (mut open, mut unsynced, mut synced) = (BTreeMap::new(), None, 0);
+    for line in std::fs::read_to_string(&trace)?.lines() {
+        let call = line.split_once(' ').map_or(line, |(_pid, call)| call.trim_start());
+        let argument = |call: &str| call.split(['(', ',', ')']).nth(1).map(str::to_owned).unwrap_or_default();
+        let result = call.rsplit_once("= ").map(|(_, result)| result.trim().to_owned()).unwrap_or_default();
+        if call.starts_with("openat(") && (call.contains(".csv\"") || call.contains(".events.jsonl\"")) {
+            if call.contains("O_CREAT") {
+                assert!(call.contains("O_EXCL") && call.contains("O_APPEND"), "{call}");
+                open.insert(result, call.to_owned());
+            }
+        } else if call.starts_with("close(") {
+            open.remove(&argument(call));
+        } else if open.contains_key(&argument(call)) {
+            if call.starts_with("write(") {
+                assert_eq!(unsynced.replace(argument(call)), None, "{call}");
+            } else if call.starts_with("fdatasync(") {
+                assert_eq!(unsynced.take(), Some(argument(call)), "{call}");
+                synced += 1;
+            }
+        }
+    }
+    assert_eq!(unsynced, None);
+    // Header, three rows; start, three pairs, three digests, consent, noticed, known, end.
+    assert_eq!(synced, 4 + 11);
+    Ok(())
 }

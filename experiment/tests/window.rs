@@ -10,9 +10,10 @@ mod support;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use analysis::trial_log::{Interval, OnsetSource, Phase, Reader, Trial as Row, Vsync};
+use experiment::log::read_journal;
 use image::RgbImage;
 use lab::Screen;
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -183,7 +184,10 @@ fn undisturbed() -> Result<(), Failed> {
     screen.xdotool(&["keydown", "Escape"]);
     std::thread::sleep(Duration::from_secs(3));
     screen.xdotool(&["keyup", "Escape"]);
+    let pressed = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_secs_f64();
     press_until(&screen, "F10", &data, "\"aborted\"", 1)?;
+    let last = read_journal(&log(&data).with_extension("events.jsonl")).unwrap().pop().unwrap();
+    eprintln!("the abort was on the disk {:.0} ms after its key", last.unix_us as f64 * 1e-3 - pressed * 1e3);
     until("the window closes", || {
         screen.key("Return");
         program.0.try_wait().unwrap().is_some()

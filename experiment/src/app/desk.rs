@@ -71,6 +71,8 @@ pub struct Desk<'a> {
     is_test: bool,
     /// Whether there is a graphics card to be asked.
     graphics: bool,
+    /// The monitor that was asked for.
+    monitor: Option<usize>,
     waiting: Vec<Picture>,
     phase: Phase<'a>,
     display: Display,
@@ -118,6 +120,7 @@ impl<'a> Desk<'a> {
             bots,
             is_test,
             graphics: launch.graphics,
+            monitor: launch.monitor,
             waiting: launch.pictures,
             phase: Phase::Settling { since_s: time.now_s(), passes: 0, size_px: [0, 0] },
             display: Display { allowed_unverified: launch.allow_unverified, ..Display::default() },
@@ -148,8 +151,14 @@ impl<'a> Desk<'a> {
         matches!(self.phase, Phase::Settling { .. })
     }
 
-    /// The monitor, as the system describes it.
-    pub fn monitor(&mut self, name: Option<String>, refresh_millihertz: Option<u32>) {
+    /// The monitor, as the system describes it, and how many it has. One that was asked for and is not there is a refusal:
+    /// the window system would take another without a word.
+    pub fn monitor(&mut self, name: Option<String>, refresh_millihertz: Option<u32>, there: usize) {
+        if let Some(wanted) = self.monitor.filter(|&wanted| wanted >= there) {
+            self.phase = Phase::Refused(format!(
+                "There is no display {wanted}: there are {there}, counted from 0. Name another with --display."
+            ));
+        }
         self.display.monitor = name;
         self.os_hz = refresh_millihertz.filter(|&rate| rate > 0).map(|rate| f64::from(rate) / 1e3);
     }

@@ -215,14 +215,12 @@ pub(super) fn set_up(ui: &mut Ui, study: &Study, form: &mut Form, facts: &str, p
             });
             ui.label(form.advice(study));
             ui.checkbox(&mut form.neutral, "Night light, HDR and colour management are off.");
-            ui.horizontal(|ui| {
-                if ui.button("Begin (Enter)").clicked() {
-                    act = SetUp::Begin;
-                }
-                if !problem.is_empty() {
-                    ui.label(RichText::new(problem).strong());
-                }
-            });
+            if ui.button("Begin (Enter)").clicked() {
+                act = SetUp::Begin;
+            }
+            if !problem.is_empty() {
+                ui.label(RichText::new(problem).strong());
+            }
         });
     });
     act
