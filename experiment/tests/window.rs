@@ -157,7 +157,7 @@ fn by_keyboard() -> Result<(), Failed> {
     Ok(())
 }
 
-/// During a picture: Escape, the keyboard taken by another window, and the window manager's close.
+/// During a picture: Escape, the keyboard taken by another window, the window manager's close, and a stop of 1.5 s.
 fn undisturbed() -> Result<(), Failed> {
     let folder = tempfile::tempdir().unwrap();
     let (study, data) = (folder.path().join("study"), folder.path().join("data"));
@@ -172,6 +172,11 @@ fn undisturbed() -> Result<(), Failed> {
     screen.key("Escape");
     screen.key("alt+F4");
     screen.steal_focus();
+    let pid = program.0.id().to_string();
+    let signal = |name: &str| assert!(Command::new("kill").args([name, &pid]).status().unwrap().success());
+    signal("-STOP");
+    std::thread::sleep(Duration::from_millis(1500)); // as a machine that sleeps, within a picture of 4 s
+    signal("-CONT");
     until("the practice row", || {
         screen.xdotool(&["key", "--delay", "150", "4", "Return"]);
         rows(&data).len() == 1
@@ -179,7 +184,9 @@ fn undisturbed() -> Result<(), Failed> {
     assert_eq!(program.0.try_wait().unwrap(), None, "the session goes on");
     let reasons = rows(&data)[0].interrupt_reason.clone();
     assert!(reasons.contains("escape") && reasons.contains("close_requested"), "{reasons}");
-    assert!(reasons.contains("focus_lost"), "{reasons}");
+    assert!(reasons.contains("focus_lost") && reasons.contains("suspended"), "{reasons}");
+    let missed = rows(&data)[0].first_missed_frames.unwrap() + rows(&data)[0].second_missed_frames.unwrap();
+    assert!(missed > 0, "a frame of 1.5 s is flagged in its row");
     // The experimenter's two steps: Escape held, then F10.
     screen.xdotool(&["keydown", "Escape"]);
     std::thread::sleep(Duration::from_secs(3));
@@ -296,7 +303,8 @@ fn layouts() -> Result<(), Failed> {
 }
 
 /// At every scale: whatever is in the middle of the screen while programs answer is grey, text, or a picture's file to the
-/// last byte; and every picture is seen. `SESSION_STUDY` names another study than the generated one.
+/// last byte; and every picture is seen. `SESSION_STUDY` names another study than the generated one,
+/// and `SESSION_BOTS=4` shows the pictures of every cell.
 fn pixels() -> Result<(), Failed> {
     for scale in ["1", "1.25", "1.5", "2"] {
         let folder = tempfile::tempdir().unwrap();
@@ -314,7 +322,8 @@ fn pixels() -> Result<(), Failed> {
             let file = study.folder.join(stimulus.file());
             wanted.push((stimulus.id(), image::open(file).unwrap().into_rgb8(), 0));
         }
-        let run = ["--simulate", "1", "--window", "--speed", "4"];
+        let bots = support::times("SESSION_BOTS", 1).to_string();
+        let run = ["--simulate", &bots, "--window", "--speed", "4"];
         let mut program = screen.scaled(scale, &study.folder, &data, &run);
         let mut torn = 0;
         until("the rehearsal ends", || {
