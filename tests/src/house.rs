@@ -20,7 +20,7 @@ const RENDERER_ARROWS: &[(&str, &[&str])] = &[
     ("pattern", &["cal", "color", "math"]),
     ("material", &["component", "color", "math", "pattern", "sample"]),
     ("geometry", &["math"]),
-    ("scene", &["rad", "material", "geometry", "color", "component", "math", "pattern", "sample"]),
+    ("scene", &["rad", "material", "geometry", "color", "component", "math", "pattern", "picture", "cal", "sample"]),
     ("film", &["component", "raster", "color"]),
     ("features", &["raster", "geometry"]),
     (

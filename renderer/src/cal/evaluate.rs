@@ -82,13 +82,19 @@ impl std::error::Error for EvaluationError {}
 
 type Result<T> = std::result::Result<T, EvaluationError>;
 
-/// Evaluates expressions of a set of functions. One for each thread: it keeps the variables' values.
-pub struct Evaluator<'a> {
-    functions: &'a Functions,
+/// The variables' values of an evaluator, kept between evaluators so that a hit allocates nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Memory {
     /// By symbol: a variable's value, and for which place it was computed.
     values: Vec<(u64, f64)>,
     /// The place.
     place: u64,
+}
+
+/// Evaluates expressions of a set of functions. One for each thread: it keeps the variables' values.
+pub struct Evaluator<'a> {
+    functions: &'a Functions,
+    memory: Memory,
     depth: u32,
     steps: u64,
 }
@@ -113,12 +119,27 @@ impl<'a> Evaluator<'a> {
     /// A fresh one.
     #[must_use]
     pub fn new(functions: &'a Functions) -> Self {
-        Self { functions, values: vec![(0, 0.0); functions.symbols.len()], place: 0, depth: 0, steps: 0 }
+        Self::with(functions, Memory::default())
+    }
+
+    /// One with the memory of an earlier one, at another place.
+    #[must_use]
+    pub fn with(functions: &'a Functions, mut memory: Memory) -> Self {
+        memory.values.resize(functions.symbols.len(), (0, 0.0));
+        // The first place is 1: no value is kept for 0.
+        memory.place += 1;
+        Self { functions, memory, depth: 0, steps: 0 }
+    }
+
+    /// Its memory, for the next one.
+    #[must_use]
+    pub fn into_memory(self) -> Memory {
+        self.memory
     }
 
     /// Forgets the variables' values: what is asked next is asked at another place.
     pub fn move_on(&mut self) {
-        self.place += 1;
+        self.memory.place += 1;
     }
 
     /// The value of an expression. Variables keep their values until [`Self::move_on`].
@@ -135,6 +156,14 @@ impl<'a> Evaluator<'a> {
     /// # Errors
     /// See [`EvaluationError`].
     pub fn apply(&mut self, lambda: Lambda, parameters: &[f64]) -> Result<f64> {
+        self.apply_at(lambda, parameters, &Nowhere)
+    }
+
+    /// The value of a function of parameters that may ask for its surroundings, too.
+    ///
+    /// # Errors
+    /// See [`EvaluationError`].
+    pub fn apply_at(&mut self, lambda: Lambda, parameters: &[f64], at: &dyn Surroundings) -> Result<f64> {
         self.start();
         let frame = Frame {
             called: None,
@@ -143,12 +172,10 @@ impl<'a> Evaluator<'a> {
             known: Cell::new(0),
             caller: None,
         };
-        self.node(lambda.0, &Nowhere, Some(&frame))
+        self.node(lambda.0, at, Some(&frame))
     }
 
     fn start(&mut self) {
-        // The first place is 1: no value is kept for it.
-        self.place = self.place.max(1);
         (self.depth, self.steps) = (0, 0);
     }
 
@@ -187,12 +214,12 @@ impl<'a> Evaluator<'a> {
         let Some(definition) = definition.filter(|definition| definition.parameters.is_none()) else {
             return Err(EvaluationError::Undefined(self.name(Some(symbol))));
         };
-        let kept = self.values[symbol as usize];
-        if kept.0 == self.place {
+        let kept = self.memory.values[symbol as usize];
+        if kept.0 == self.memory.place {
             return Ok(kept.1);
         }
         let value = self.node(definition.body, at, frame)?;
-        self.values[symbol as usize] = (self.place, value);
+        self.memory.values[symbol as usize] = (self.memory.place, value);
         Ok(value)
     }
 

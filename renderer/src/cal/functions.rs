@@ -111,6 +111,24 @@ impl Functions {
         Parser::new(text, &mut self.symbols, "")?.whole(parameters).map(Lambda)
     }
 
+    /// Reads an expression of parameters as if it stood in the function file `file` (`.` for none).
+    ///
+    /// # Errors
+    /// A syntax error, with offsets in `text`.
+    pub fn lambda_in(&mut self, file: &str, parameters: &[&'static str], text: &str) -> Result<Lambda, BadExpression> {
+        let context = context(file);
+        self.begin(text, text);
+        Parser::new(text, &mut self.symbols, &context)?.whole(parameters).map(Lambda)
+    }
+
+    /// How many parameters the function has that `name` means in the function file `file`: `None` for what is no
+    /// function, or one of the library.
+    #[must_use]
+    pub fn parameters(&self, file: &str, name: &str) -> Option<u32> {
+        let symbol = self.symbols.get(self.symbols.find(name, &context(file))?);
+        symbol.definition?.parameters
+    }
+
     /// Whether a name is a function of that many parameters, or a variable (no parameters).
     #[must_use]
     pub fn defines(&self, name: &str, parameters: Option<u32>) -> bool {

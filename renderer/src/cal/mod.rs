@@ -21,7 +21,7 @@ mod symbols;
 mod tests;
 
 pub use channels::CHANNELS;
-pub use evaluate::{EvaluationError, Evaluator, Nowhere, Surroundings};
+pub use evaluate::{EvaluationError, Evaluator, Memory, Nowhere, Surroundings};
 pub use functions::{Expression, Functions, Lambda};
 pub use library::Dialect;
 pub use parse::BadExpression;

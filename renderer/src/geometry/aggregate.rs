@@ -73,6 +73,12 @@ pub struct Aggregate {
     has_refracting: bool,
 }
 
+impl std::fmt::Debug for Aggregate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} shapes", self.items.len())
+    }
+}
+
 /// A ray within the bounds of the scene, in the hierarchy's frame.
 struct Entry {
     ray: obvhs::ray::Ray,
@@ -285,6 +291,11 @@ impl Aggregate {
 
     fn hit(&self, ray: &Ray, t: f64, slot: usize) -> Hit {
         let item = &self.items[slot];
+        if let Shape::Placed(placed) = &item.shape
+            && let Some(hit) = placed.hit(ray, tolerance::least_distance(ray.origin, self.radius))
+        {
+            return hit;
+        }
         let (point, normal) = item.shape.settle(ray.at(t));
         Hit { t, point, normal, surface: item.surface }
     }

@@ -18,6 +18,9 @@ const LEAST_COSINE2: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dielectric {
     extinction: Rgb,
+    /// Of the medium outside: empty space, but for an interface.
+    outside: Rgb,
+    /// Index inside over index outside.
     index: f64,
 }
 
@@ -42,7 +45,36 @@ impl Dielectric {
         let dispersion = arguments.take("Hartmann constant", "a finite number that leaves the index above 0", |x| {
             x.is_finite() && index + x / HARTMANN_NM > 0.0
         })?;
-        Ok(Self { extinction: transmission.to_array().map(extinction).into(), index: index + dispersion / HARTMANN_NM })
+        Ok(Self {
+            extinction: transmission.to_array().map(extinction).into(),
+            outside: Rgb::ZERO,
+            index: index + dispersion / HARTMANN_NM,
+        })
+    }
+
+    /// `interface` from `R G B index R G B index`: transmission per unit of length and refractive index, inside and
+    /// outside.
+    ///
+    /// # Errors
+    /// If their number is not 8, a transmission is negative or an index not positive.
+    pub fn interface(reals: &[f64]) -> Result<Self, ArgumentError> {
+        let names = "red green blue refractive-index, inside and outside";
+        let mut arguments = Arguments::new(reals, &[8], "8", names)?;
+        let mut medium = || {
+            let transmission = arguments.color()?;
+            let index =
+                arguments.take("refractive index", "a finite number above 0", |x| x > 0.0 && x < f64::INFINITY)?;
+            Ok((Rgb::from(transmission.to_array().map(extinction)), index))
+        };
+        let ((inside, index), (outside, index_outside)) = (medium()?, medium()?);
+        Ok(Self { extinction: inside, outside, index: index / index_outside })
+    }
+
+    /// Absorption on the ray's side, per unit of length, where the boundary knows it: inside, and of an interface
+    /// outside.
+    #[must_use]
+    pub fn medium(&self, front: bool) -> Option<Rgb> {
+        if !front { Some(self.extinction) } else { (self.outside != Rgb::ZERO).then_some(self.outside) }
     }
 
     /// Absorption inside, per unit of length: radiance falls as exp(-extinction x length).
@@ -67,9 +99,9 @@ impl Dielectric {
         Boundary { reflectance, refracted: Some((direction.normalize(), (1.0 - reflectance) * ratio * ratio)) }
     }
 
-    /// The medium that a ray is in on the far side of the boundary. Outside is empty space.
+    /// The medium that a ray is in on the far side of the boundary.
     fn beyond(&self, interaction: &Interaction) -> Rgb {
-        if interaction.front { self.extinction } else { Rgb::ZERO }
+        if interaction.front { self.extinction } else { self.outside }
     }
 
     /// Gives each lobe to `spawn`, in a fixed order.
@@ -88,7 +120,7 @@ impl Dielectric {
                 event: Event::BoundaryReflection,
                 spread: Spread::Ideal(interaction.reflected()),
                 coefficient: Rgb::splat(boundary.reflectance),
-                medium: (!interaction.front).then_some(self.extinction),
+                medium: self.medium(interaction.front),
             });
         }
     }

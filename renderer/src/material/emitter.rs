@@ -115,6 +115,12 @@ impl Emitter {
         Ok(Self { radiance, kind: EmitterKind::Illum(alternate) })
     }
 
+    /// The same under a pattern.
+    #[must_use]
+    pub fn tinted(self, tint: Rgb) -> Self {
+        Self { radiance: self.radiance * tint, ..self }
+    }
+
     /// Radiance of its front, W/(sr m2) per channel.
     #[must_use]
     pub fn radiance(&self) -> Rgb {

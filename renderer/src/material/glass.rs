@@ -18,6 +18,8 @@ pub struct Glass {
     /// Transmissivity at normal incidence: the fraction left after one passage through the pane, without reflections.
     transmissivity: Rgb,
     index: f64,
+    /// The colour of a pattern, which filters what passes.
+    tint: Rgb,
 }
 
 /// What a pane passes and reflects, interreflections inside it included.
@@ -39,7 +41,18 @@ impl Glass {
         } else {
             GLASS_INDEX
         };
-        Ok(Self { transmissivity, index })
+        Ok(Self { transmissivity, index, tint: Rgb::ONE })
+    }
+
+    /// The same under a pattern.
+    #[must_use]
+    pub fn tinted(self, tint: Rgb) -> Self {
+        Self { tint: self.tint * tint, ..self }
+    }
+
+    /// Refractive index.
+    pub(super) fn index(&self) -> f64 {
+        self.index
     }
 
     /// Transmittance and reflectance of a pane, the mean of both polarisations (Radiance reference manual, `glass`).
@@ -56,6 +69,7 @@ impl Glass {
         if self.transmissivity == Rgb::ZERO {
             pane.transmitted = Rgb::ZERO;
         }
+        pane.transmitted *= self.tint;
         pane
     }
 

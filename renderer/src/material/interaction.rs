@@ -29,6 +29,21 @@ impl Interaction {
         Self { incoming, normal, cosine: cosine.clamp(Self::LEAST_COSINE, 1.0), front }
     }
 
+    /// The same, with `bend` added to the front's normal by textures: a normal that would turn away from the ray is
+    /// tilted as far to its other side, as in Radiance.
+    #[must_use]
+    pub fn bent(incoming: DVec3, front_normal: DVec3, bend: DVec3) -> Self {
+        let front = incoming.dot(front_normal) < 0.0;
+        let (normal, bend) = if front { (front_normal, bend) } else { (-front_normal, -bend) };
+        let Some(mut bent) = (normal + bend).try_normalize() else { return Self::new(incoming, front_normal) };
+        let mut cosine = -incoming.dot(bent);
+        if cosine < 0.0 {
+            bent -= incoming * (2.0 * incoming.dot(bent));
+            cosine = -cosine;
+        }
+        Self { incoming, normal: bent, cosine: cosine.clamp(Self::LEAST_COSINE, 1.0), front }
+    }
+
     /// The direction of ideal reflection.
     #[must_use]
     pub fn reflected(&self) -> DVec3 {

@@ -29,6 +29,13 @@ pub enum Spread {
     Ideal(DVec3),
     /// Cosine-weighted hemisphere around a unit vector.
     Cosine(Vec3),
+    /// Cosine-weighted hemisphere around one unit vector, of which only what lies above the plane of another counts.
+    CosineAbove {
+        /// The bent normal.
+        axis: Vec3,
+        /// The surface's own.
+        above: Vec3,
+    },
     /// Ward's reflection lobe around the mirror direction.
     RoughReflection {
         /// Unit normal on the side of the incoming ray.
@@ -37,6 +44,39 @@ pub enum Spread {
         incoming: Vec3,
         /// Ward's alpha.
         roughness: f32,
+    },
+    /// Ward's reflection lobe, wider one way than the other.
+    EllipticReflection {
+        /// Unit normal on the side of the incoming ray.
+        normal: Vec3,
+        /// Direction of the incoming ray.
+        incoming: Vec3,
+        /// The direction of the first roughness, as long as that.
+        axis: Vec3,
+        /// The roughness across it.
+        across: f32,
+    },
+    /// The transmission lobe, wider one way than the other.
+    EllipticTransmission {
+        /// Unit normal on the side of the incoming ray.
+        normal: Vec3,
+        /// Direction of the ray that would pass straight through.
+        through: Vec3,
+        /// The direction of the first roughness, as long as that.
+        axis: Vec3,
+        /// The roughness across it.
+        across: f32,
+    },
+    /// The lobe of [`super::Ashikhmin`].
+    Phong {
+        /// Unit normal on the side of the incoming ray.
+        normal: Vec3,
+        /// Direction of the incoming ray.
+        incoming: Vec3,
+        /// The direction of the first power, that and 1 long.
+        axis: Vec3,
+        /// The power across it, and 1.
+        across: f32,
     },
     /// Radiance's lobe around the transmitted direction.
     RoughTransmission {
@@ -76,6 +116,11 @@ impl Spread {
                 let frame = Frame::around(axis.as_dvec3().normalize());
                 Some((frame.to_world(warp::cosine_hemisphere(draw(0))), 1.0))
             }
+            Self::CosineAbove { axis, above } => {
+                let frame = Frame::around(axis.as_dvec3().normalize());
+                let direction = frame.to_world(warp::cosine_hemisphere(draw(0)));
+                (direction.dot(above.as_dvec3()) > 0.0).then_some((direction, 1.0))
+            }
             Self::RoughReflection { normal, incoming, roughness } => {
                 let (normal, incoming) = (normal.as_dvec3().normalize(), incoming.as_dvec3().normalize());
                 let sample = |trial| ward::reflect(incoming, normal, f64::from(roughness), glossy.width, draw(trial));
@@ -87,6 +132,38 @@ impl Spread {
                     (0..GlossySampling::TRIALS).find_map(sample).map(|direction| (direction, 1.0))
                 }
             }
+            Self::EllipticReflection { normal, incoming, axis, across } => {
+                let (frame, along) = elliptic(normal, axis);
+                let incoming = incoming.as_dvec3().normalize();
+                let sample = |trial| {
+                    let slopes = ward::slopes([along, f64::from(across)], glossy.width, draw(trial));
+                    ward::reflect_about(incoming, &frame, slopes)
+                };
+                if glossy.weighted {
+                    let direction = sample(0)?;
+                    let ratio = -incoming.dot(frame.w) / direction.dot(frame.w);
+                    Some((direction, 2.0 / (1.0 + ratio)))
+                } else {
+                    (0..GlossySampling::TRIALS).find_map(sample).map(|direction| (direction, 1.0))
+                }
+            }
+            Self::EllipticTransmission { normal, through, axis, across } => {
+                let (frame, along) = elliptic(normal, axis);
+                let through = through.as_dvec3().normalize();
+                let sample = |trial| {
+                    let slopes = ward::slopes([along, f64::from(across)], glossy.width, draw(trial));
+                    ward::transmit_about(through, &frame, slopes)
+                };
+                let trials = if glossy.weighted { 1 } else { GlossySampling::TRIALS };
+                (0..trials).find_map(sample).map(|direction| (direction, 1.0))
+            }
+            Self::Phong { normal, incoming, axis, across } => {
+                let (frame, along) = elliptic(normal, axis);
+                let incoming = incoming.as_dvec3().normalize();
+                let powers = [along - 1.0, f64::from(across) - 1.0];
+                let sample = |trial| super::ashikhmin::reflect(incoming, &frame, powers, draw(trial));
+                (0..GlossySampling::TRIALS).find_map(sample).map(|direction| (direction, 1.0))
+            }
             Self::RoughTransmission { normal, through, roughness } => {
                 let (normal, through) = (normal.as_dvec3().normalize(), through.as_dvec3().normalize());
                 let sample = |trial| ward::transmit(through, normal, f64::from(roughness), glossy.width, draw(trial));
@@ -95,4 +172,12 @@ impl Spread {
             }
         }
     }
+}
+
+/// The frame around a normal whose first axis is along `axis`, and that vector's length.
+fn elliptic(normal: Vec3, axis: Vec3) -> (Frame, f64) {
+    let (w, axis) = (normal.as_dvec3().normalize(), axis.as_dvec3());
+    // Both were unit vectors at right angles before they were rounded.
+    let v = w.cross(axis).normalize_or(Frame::around(w).v);
+    (Frame { u: v.cross(w), v, w }, axis.length())
 }

@@ -25,6 +25,12 @@ impl Metal {
         Ok(Self { color, finish })
     }
 
+    /// The same under a pattern.
+    #[must_use]
+    pub fn tinted(self, tint: Rgb) -> Self {
+        Self { color: self.color * tint, ..self }
+    }
+
     /// How the surface answers a ray. What Fresnel adds at grazing angles is white: metals lose their colour there.
     #[must_use]
     pub fn respond(&self, interaction: Interaction) -> Response {

@@ -22,6 +22,12 @@ impl Mirror {
         Ok(Self { reflectance: arguments.color()?, alternate })
     }
 
+    /// The same under a pattern.
+    #[must_use]
+    pub fn tinted(self, tint: Rgb) -> Self {
+        Self { reflectance: self.reflectance * tint, ..self }
+    }
+
     /// The fraction that it reflects, at every angle.
     #[must_use]
     pub fn reflectance(&self) -> Rgb {

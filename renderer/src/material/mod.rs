@@ -5,11 +5,15 @@
 //! by a [`Response`]; and [`Material::scatter`] names the [`Lobe`]s along which light arrives from elsewhere, each with
 //! its [`Event`]. [`crate::component::Component::of`] turns the event into the bin.
 
+mod anisotropic;
 mod arguments;
+mod ashikhmin;
+mod bend;
 mod dielectric;
 mod emitter;
 mod event;
 mod fresnel;
+mod functional;
 mod glass;
 mod interaction;
 mod lobe;
@@ -20,11 +24,15 @@ mod response;
 mod trans;
 mod ward;
 
+pub use anisotropic::{Anisotropic, Gloss};
 pub use arguments::ArgumentError;
+pub use ashikhmin::Ashikhmin;
+pub use bend::Bend;
 pub use dielectric::Dielectric;
 pub use emitter::{Emitter, EmitterKind, Spot};
 pub use event::Event;
 pub use fresnel::{FRESNEL_OFFSET, FRESNEL_OFFSET_EXACT};
+pub use functional::Functional;
 pub use glass::Glass;
 pub use interaction::Interaction;
 pub use lobe::{GlossySampling, Lobe, Spread};
@@ -34,6 +42,7 @@ pub use plastic::Plastic;
 pub use response::Response;
 pub use trans::Trans;
 
+use crate::color::Rgb;
 use crate::component::{Component, ComponentSet};
 
 /// Index of a material in `Scene::materials`.
@@ -77,9 +86,77 @@ pub enum Material {
     Mirror(Mirror),
     /// `light`, `glow`, `spotlight` or `illum`.
     Emitter(Emitter),
+    /// `plastic2`, `metal2` or `trans2` at a hit.
+    Anisotropic(Anisotropic),
+    /// `ashik2` at a hit.
+    Ashikhmin(Ashikhmin),
+    /// A material with a reflection function of its own, at a hit.
+    Functional(Functional, ProgramId),
+    /// One of those three, before functions have said what it is at a hit.
+    Programmed(ProgramId),
+    /// What cuts other solids away.
+    Antimatter(AntimatterId),
+    /// One of these under patterns and textures, or a mixture of two.
+    Dressed(DressId),
+}
+
+/// Index of an antimatter in `Scene::antimatters`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct AntimatterId(pub u32);
+
+impl AntimatterId {
+    /// The index.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Index of a material's functions in `Scene::programs`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ProgramId(pub u32);
+
+impl ProgramId {
+    /// The index.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Index of a surface's modifiers in `Scene::dresses`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct DressId(pub u32);
+
+impl DressId {
+    /// The index.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
 }
 
 impl Material {
+    /// The same under a pattern. A dielectric's absorption takes none.
+    #[must_use]
+    pub fn tinted(self, tint: Rgb) -> Self {
+        match self {
+            Self::Plastic(plastic) => Self::Plastic(plastic.tinted(tint)),
+            Self::Metal(metal) => Self::Metal(metal.tinted(tint)),
+            Self::Trans(trans) => Self::Trans(trans.tinted(tint)),
+            Self::Glass(glass) => Self::Glass(glass.tinted(tint)),
+            Self::Mirror(mirror) => Self::Mirror(mirror.tinted(tint)),
+            Self::Emitter(emitter) => Self::Emitter(emitter.tinted(tint)),
+            Self::Dielectric(_)
+            | Self::Anisotropic(_)
+            | Self::Ashikhmin(_)
+            | Self::Functional(..)
+            | Self::Programmed(_)
+            | Self::Antimatter(_)
+            | Self::Dressed(_) => self,
+        }
+    }
+
     /// Whether Radiance counts the material as transparent: some light goes through it.
     #[must_use]
     pub fn is_transparent(&self) -> bool {
@@ -112,7 +189,7 @@ impl Material {
             Self::Plastic(plastic) => Some(plastic.respond(interaction)),
             Self::Metal(metal) => Some(metal.respond(interaction)),
             Self::Trans(trans) => Some(trans.respond(interaction)),
-            Self::Glass(_) | Self::Dielectric(_) | Self::Mirror(_) | Self::Emitter(_) => None,
+            _ => None,
         }
     }
 
@@ -126,7 +203,10 @@ impl Material {
             Self::Glass(glass) => glass.scatter(&interaction, spawn),
             Self::Dielectric(dielectric) => dielectric.scatter(&interaction, spawn),
             Self::Mirror(mirror) => mirror.scatter(&interaction, spawn),
-            Self::Emitter(_) => {}
+            Self::Anisotropic(anisotropic) => anisotropic.scatter(&interaction, threshold, spawn),
+            Self::Ashikhmin(ashikhmin) => ashikhmin.scatter(&interaction, threshold, spawn),
+            Self::Functional(functional, _) => functional.scatter(&interaction, spawn),
+            Self::Emitter(_) | Self::Programmed(_) | Self::Antimatter(_) | Self::Dressed(_) => {}
         }
     }
 }

@@ -25,6 +25,12 @@ impl Plastic {
         Ok(Self { color, finish })
     }
 
+    /// The same under a pattern.
+    #[must_use]
+    pub fn tinted(self, tint: Rgb) -> Self {
+        Self { color: self.color * tint, ..self }
+    }
+
     /// How the surface answers a ray.
     #[must_use]
     pub fn respond(&self, interaction: Interaction) -> Response {

@@ -38,6 +38,12 @@ impl Trans {
         Ok(Self { color, finish, transmissivity, specular_share })
     }
 
+    /// The same under a pattern.
+    #[must_use]
+    pub fn tinted(self, tint: Rgb) -> Self {
+        Self { color: self.color * tint, ..self }
+    }
+
     fn shares(&self, cosine: f64) -> Shares {
         let reflected_specular = significant(self.finish.reflectance(cosine));
         let passed = self.transmissivity * (1.0 - reflected_specular);

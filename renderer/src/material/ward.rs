@@ -43,6 +43,26 @@ fn spread(roughness: f64, width: f64, u: f64) -> f64 {
     roughness * (-(-width * u).ln_1p()).sqrt()
 }
 
+/// Slopes of a microfacet along two axes, by their roughnesses.
+pub(super) fn slopes(roughness: [f64; 2], width: f64, u: [f64; 2]) -> [f64; 2] {
+    let (sin, cos) = (TAU * u[0]).sin_cos();
+    let q = spread(1.0, width, u[1]);
+    [roughness[0] * q * cos, roughness[1] * q * sin]
+}
+
+/// The reflection off a microfacet of these slopes along the frame's first two axes; `None` if it lies below the surface.
+pub(super) fn reflect_about(incoming: DVec3, frame: &Frame, [along, across]: [f64; 2]) -> Option<DVec3> {
+    let half = frame.w + frame.u * along + frame.v * across;
+    let direction = incoming - half * (2.0 * half.dot(incoming) / half.length_squared());
+    (direction.dot(frame.w) > LEAST_COSINE).then(|| direction.normalize())
+}
+
+/// The transmitted direction turned aside by these slopes; `None` if it lies on the wrong side.
+pub(super) fn transmit_about(through: DVec3, frame: &Frame, [along, across]: [f64; 2]) -> Option<DVec3> {
+    let direction = through + frame.u * along + frame.v * across;
+    (direction.dot(frame.w) < -LEAST_COSINE).then(|| direction.normalize())
+}
+
 /// A direction of the reflection lobe; `None` if it lies below the surface.
 pub(super) fn reflect(incoming: DVec3, normal: DVec3, roughness: f64, width: f64, u: [f64; 2]) -> Option<DVec3> {
     let frame = Frame::around(normal);

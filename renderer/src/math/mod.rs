@@ -2,7 +2,9 @@
 
 mod frame;
 pub mod quadratic;
+mod similarity;
 pub mod tolerance;
 pub mod warp;
 
 pub use frame::Frame;
+pub use similarity::Similarity;

@@ -213,6 +213,8 @@ pub(super) struct BinaryScene {
 impl BinaryScene {
     pub(super) fn into_document(self, source: &Source) -> Document {
         let file = SourceFile { name: source.name.clone(), text: String::new(), read_by: None };
-        Document::new(vec![file], self.primitives, self.names)
+        let mut document = Document::new(vec![file], self.primitives, self.names);
+        document.folders.push(source.folder.clone());
+        document
     }
 }

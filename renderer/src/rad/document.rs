@@ -72,6 +72,8 @@ pub struct Document {
     pub primitives: Vec<Primitive>,
     /// Remarks on what is legal but probably not meant.
     pub warnings: Vec<Error>,
+    /// The folders in which files that arguments name are looked for first, in order.
+    pub folders: Vec<String>,
     names: Names,
 }
 
@@ -108,7 +110,7 @@ impl Names {
 
 impl Document {
     pub(super) fn new(sources: Vec<SourceFile>, primitives: Vec<Primitive>, names: Names) -> Self {
-        Self { sources, primitives, warnings: Vec::new(), names }
+        Self { sources, primitives, warnings: Vec::new(), folders: Vec::new(), names }
     }
 
     /// The modifier that `name` means to the primitive with index `user`: the latest definition before it. `void` is

@@ -100,6 +100,11 @@ pub fn read(texts: &[Source], files: &dyn Files, options: &Options<'_>) -> Resul
         problems.add(document.error(span, message));
     }
     document.warnings = warnings;
+    for text in texts {
+        if !document.folders.contains(&text.folder) {
+            document.folders.push(text.folder.clone());
+        }
+    }
     if problems.is_empty() { Ok(document) } else { Err(problems.into_errors()) }
 }
 

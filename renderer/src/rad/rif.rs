@@ -41,6 +41,9 @@ const VARIABLES: [&str; 32] = [
     "RTRACE",
 ];
 
+/// Variables whose names may be cut down to two letters.
+const SHORT: [&str; 5] = ["VIEW", "UP", "ZONE", "ZFILE", "PFILT"];
+
 /// The files of a scene, in the order in which rad gives them to oconv.
 const SCENE_VARIABLES: [&str; 3] = ["MATERIALS", "ILLUM", "SCENE"];
 
@@ -92,8 +95,9 @@ impl Rif {
                 continue;
             };
             let wanted = name.trim().to_ascii_uppercase();
-            let variable =
-                VARIABLES.iter().find(|known| known.starts_with(&wanted) && (wanted.len() >= 3 || wanted == **known));
+            let variable = VARIABLES
+                .iter()
+                .find(|known| known.starts_with(&wanted) && wanted.len() >= if SHORT.contains(known) { 2 } else { 3 });
             let Some(variable) = variable else {
                 let message = format!("rad has no variable `{}`", name.trim());
                 problems.add(Error::in_text(&source.name, &text, start, start + name.trim_end().len(), message));
@@ -133,9 +137,23 @@ impl Rif {
                 let mut options = words(&assignment.value);
                 let named = options.first().is_some_and(|word| !word.starts_with('-'));
                 let name = named.then(|| options.remove(0));
+                if let Some(up) = self.up() {
+                    options.splice(0..0, ["-vu".to_owned()].into_iter().chain(up.map(|x| x.to_string())));
+                }
                 RifView { name, options }
             })
             .collect()
+    }
+
+    /// The vector of `UP`, if that is given: the views' `-vu` unless they have their own.
+    fn up(&self) -> Option<[i32; 3]> {
+        let value = self.value("UP")?;
+        let sign = if value.starts_with('-') { -1 } else { 1 };
+        let axis = value.trim_start_matches(['+', '-']).chars().next()?.to_ascii_uppercase();
+        let at = ['X', 'Y', 'Z'].iter().position(|&letter| letter == axis)?;
+        let mut up = [0; 3];
+        up[at] = sign;
+        Some(up)
     }
 
     /// The texts that make the scene: `materials`, `illum` and `scene`, files or commands (`"!command"`).
@@ -190,8 +208,9 @@ mod tests {
         assert_eq!(rif.words("scene"), ["desk", "lamp", "!xform -t 1 2 3 chair"]);
         assert_eq!((rif.value("resolution"), rif.value("UP"), rif.value("ZONE")), (Some("256"), Some("Y"), None));
         let views = rif.views();
-        assert_eq!((views[0].name.as_deref(), views[0].options.len()), (Some("norm"), 6));
-        assert_eq!((views[1].name.as_deref(), views[1].options.join(" ").as_str()), (None, "-vf a.vf"));
+        assert_eq!((views[0].name.as_deref(), views[0].options.len()), (Some("norm"), 10));
+        assert_eq!(views[0].options[..4].join(" "), "-vu 0 1 0");
+        assert_eq!((views[1].name.as_deref(), views[1].options.join(" ").as_str()), (None, "-vu 0 1 0 -vf a.vf"));
     }
 
     #[test]

@@ -1,23 +1,32 @@
 //! A scene with its meaning: surfaces, materials, lights, and the view of it.
 
+mod antimatter;
+mod dress;
 mod far;
 mod from_rad;
+mod group;
 mod light;
 mod names;
+mod program;
 mod surface;
 mod view;
+
+use std::collections::HashMap;
 
 use glam::DVec3;
 
 use crate::component::ComponentSet;
 use crate::geometry::{Aggregate, Item, Passage, Shape, SurfaceId};
-use crate::material::{Alternate, EmitterKind, Interaction, Material, MaterialId};
+use crate::material::{Alternate, AntimatterId, EmitterKind, Interaction, Material, MaterialId, Mirror};
+use crate::pattern::Library;
 use crate::rad;
 
+pub use dress::Worn;
 pub use far::{FarId, FarSource};
 pub use light::{Leg, Light, LightSample};
 pub use names::NameId;
 use names::Names;
+pub use program::reflection;
 pub use surface::Surface;
 pub use view::{View, ViewError};
 
@@ -47,19 +56,38 @@ pub struct Scene {
     /// What was left out or looks like a mistake, with its place in the text.
     pub warnings: Vec<rad::Error>,
     names: Names,
+    /// Patterns, textures and mixtures that surfaces wear.
+    dresses: Vec<dress::Dress>,
+    /// What cuts solids away.
+    antimatters: Vec<antimatter::Antimatter>,
+    /// The antimatters that cut a surface away, for those that any does.
+    cut_by: HashMap<SurfaceId, Vec<AntimatterId>>,
+    /// Instances and meshes, by falling number of their first surface.
+    groups: Vec<group::Group>,
+    /// Materials that functions decide.
+    programs: Vec<program::Program>,
+    /// The functions of those; absent where there are none.
+    library: Option<Library>,
 }
 
 impl Scene {
-    /// A surface.
+    /// A surface; of a mesh's triangle the mesh, of an instance's surface that one as its own file defines it.
     #[must_use]
     pub fn surface(&self, id: SurfaceId) -> &Surface {
-        &self.surfaces[id.index()]
+        match self.surfaces.get(id.index()) {
+            Some(surface) => surface,
+            None => self.grouped_surface(id),
+        }
     }
 
     /// What a surface is made of; `None` if it is invisible.
     #[must_use]
     pub fn material(&self, id: SurfaceId) -> Option<&Material> {
-        self.surface(id).material.map(|material| &self.materials[material.index()])
+        let material = match self.surfaces.get(id.index()) {
+            Some(surface) => surface.material,
+            None => self.grouped_material(id),
+        };
+        material.map(|material| &self.materials[material.index()])
     }
 
     /// The identifier of a primitive, or the name of a modifier, as in the scene text.
@@ -71,20 +99,37 @@ impl Scene {
     /// The components that the scene's materials can spawn when rpict's `-st` is `threshold`.
     #[must_use]
     pub fn components(&self, threshold: f64) -> ComponentSet {
-        self.materials.iter().fold(ComponentSet::EMPTY, |set, material| set.union(material.components(threshold)))
+        self.materials.iter().fold(ComponentSet::EMPTY, |set, material| {
+            set.union(match material {
+                Material::Programmed(id) => self.program_components(*id, threshold),
+                material => material.components(threshold),
+            })
+        })
     }
 
     /// Builds the hierarchy of all visible surfaces.
     #[must_use]
     pub fn aggregate(&self) -> Aggregate {
-        Aggregate::new(self.surfaces.iter().enumerate().filter_map(|(index, surface)| {
+        Aggregate::new(self.items(&self.surfaces))
+    }
+
+    /// The visible ones of some surfaces.
+    fn items<'a>(&'a self, surfaces: &'a [Surface]) -> impl Iterator<Item = Item> + 'a {
+        surfaces.iter().enumerate().filter_map(|(index, surface)| {
+            let passage = match &surface.shape {
+                Shape::Placed(placed) => self.group_passage(placed),
+                _ => self.passage(surface.material?),
+            };
+            let id = SurfaceId(u32::try_from(index).ok()?);
+            // Whether a surface that antimatter cuts away is there depends on the place.
+            let cut = passage == Passage::Opaque && self.cut_by.contains_key(&id);
             Some(Item {
                 shape: surface.shape.clone(),
-                surface: SurfaceId(u32::try_from(index).ok()?),
-                passage: self.passage(surface.material?),
+                surface: id,
+                passage: if cut { Passage::Straight } else { passage },
                 precedence: surface.precedence,
             })
-        }))
+        })
     }
 
     /// The distant source that shows in the unit direction `dir` to a ray that meets no surface: the first `light` or
@@ -95,8 +140,8 @@ impl Scene {
         for (index, far) in self.far.iter().enumerate() {
             if far.contains(dir) {
                 let id = u32::try_from(index).ok().map(FarId);
-                match &self.materials[far.material.index()] {
-                    Material::Emitter(emitter) if !matches!(emitter.kind(), EmitterKind::Glow { .. }) => return id,
+                match self.emitter(far.material) {
+                    Some((emitter, _)) if !matches!(emitter.kind(), EmitterKind::Glow { .. }) => return id,
                     _ => seen = id,
                 }
             }
@@ -112,13 +157,33 @@ impl Scene {
             .iter()
             .enumerate()
             .filter(|(_, surface)| {
-                let material = surface.material.map(|material| &self.materials[material.index()]);
-                matches!(material, Some(Material::Mirror(_))) && surface.shape.is_flat()
+                surface.material.is_some_and(|material| self.mirror(material).is_some()) && surface.shape.is_flat()
             })
             .filter_map(|(index, surface)| Some((SurfaceId(u32::try_from(index).ok()?), &surface.shape)))
             .collect();
         let images = light::relayed(&self.lights, &mirrors, self, levels);
         self.lights.extend(images);
+    }
+
+    /// The mirror that relays lights in a material; patterns on it are left out of that.
+    #[must_use]
+    pub fn mirror(&self, material: MaterialId) -> Option<&Mirror> {
+        match &self.materials[material.index()] {
+            Material::Mirror(mirror) => Some(mirror),
+            Material::Dressed(id) => self.bases(*id).into_iter().flatten().find_map(|base| self.mirror(base)),
+            _ => None,
+        }
+    }
+
+    /// Whether Radiance counts a material as transparent: some light goes through it.
+    #[must_use]
+    pub fn is_transparent(&self, material: MaterialId) -> bool {
+        match &self.materials[material.index()] {
+            Material::Dressed(id) => {
+                self.bases(*id).into_iter().any(|base| base.is_none_or(|base| self.is_transparent(base)))
+            }
+            material => material.is_transparent(),
+        }
     }
 
     /// What a material does to shadow rays.
@@ -128,10 +193,29 @@ impl Scene {
         let mut material = material;
         loop {
             let passes = match &self.materials[material.index()] {
-                Material::Plastic(_) | Material::Metal(_) | Material::Mirror(_) => false,
+                Material::Plastic(_)
+                | Material::Metal(_)
+                | Material::Mirror(_)
+                | Material::Anisotropic(_)
+                | Material::Ashikhmin(_)
+                | Material::Functional(..) => false,
+                Material::Programmed(id) => self.passes(*id),
+                Material::Antimatter(_) => true,
                 Material::Trans(trans) => trans.shadow(&head_on).max_element() > 0.0,
                 Material::Glass(glass) => glass.shadow(&head_on).max_element() > 0.0,
                 Material::Dielectric(_) => return Passage::Refracting,
+                Material::Dressed(id) => {
+                    let passages =
+                        self.bases(*id).map(|base| base.map_or(Passage::Straight, |base| self.passage(base)));
+                    let any = |passage| passages.contains(&passage);
+                    return if any(Passage::Refracting) {
+                        Passage::Refracting
+                    } else if any(Passage::Straight) {
+                        Passage::Straight
+                    } else {
+                        Passage::Opaque
+                    };
+                }
                 Material::Emitter(emitter) => match emitter.kind() {
                     EmitterKind::Illum(Alternate::Material(alternate)) => {
                         material = alternate;

@@ -18,5 +18,8 @@ pub(super) const IMPORTANCE: u32 = 48;
 /// Which lights are tested for shadow.
 pub(super) const CHOICE: u32 = 49;
 
+/// The material of a mixture.
+pub(super) const MIXTURE: u32 = 50;
+
 /// The point on light number i, the i-th from here.
 pub(super) const LIGHT: u32 = 64;

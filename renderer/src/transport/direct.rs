@@ -5,15 +5,17 @@
 //! they bring counts the less: an unbiased estimate (resampling in the sense of J. Talbot, D. Cline and P. Egbert,
 //! "Importance Resampling for Global Illumination", EGSR 2005).
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::color::Rgb;
 use crate::geometry::{Aggregate, Hit, Ray, Shadow, SurfaceId};
-use crate::material::{Alternate, EmitterKind, Interaction, Material, Response};
+use crate::material::{Interaction, Material};
+use crate::pattern::{Memory, Place};
 use crate::sample::Sampler;
 use crate::scene::{Leg, Light, LightSample, Scene, SourceId};
 
 use super::dimension;
+use super::look::{far_away, passed, place};
 use super::ray::transmittance;
 
 /// Vectors that shadow rays need, kept so that a hit allocates nothing.
@@ -22,6 +24,9 @@ pub(super) struct Scratch {
     crossings: Vec<Hit>,
     legs: Vec<Leg>,
     proposals: Vec<Proposal>,
+    pub(super) memory: Memory,
+    /// Of the hit's material, while those of what lies on the way use the other.
+    pub(super) own_memory: Memory,
 }
 
 /// What a light would bring from one of its points.
@@ -56,12 +61,20 @@ pub(super) struct Lit<'a> {
     pub(super) start: Ray,
     /// Extinction of the medium around the hit.
     pub(super) extinction: Vec3,
+    /// About how many shadow rays may be spent.
+    pub(super) tests: usize,
 }
 
 impl Lit<'_> {
-    /// Radiance that a surface sends back along the ray, of the light that all sources send it. At most about `tests`
-    /// shadow rays are spent on it.
-    pub(super) fn light(&self, response: &Response, sampler: &Sampler, tests: usize, scratch: &mut Scratch) -> Rgb {
+    /// Radiance that a surface sends back along the ray, of the light that all sources send it; `direct` gives the fraction
+    /// for a light's direction and solid angle. At most about `tests` shadow rays are spent on it.
+    pub(super) fn light(
+        &self,
+        mut direct: impl FnMut(DVec3, f64) -> Rgb,
+        sampler: &Sampler,
+        scratch: &mut Scratch,
+    ) -> Rgb {
+        let tests = self.tests;
         let mut proposals = std::mem::take(&mut scratch.proposals);
         proposals.clear();
         // Where few of many lights are tested, it does no harm that their points have the same place on each.
@@ -70,7 +83,7 @@ impl Lit<'_> {
         for (light, number) in self.scene.lights.iter().zip(0_u32..) {
             let u = if one { shared } else { sampler.pair(dimension::LIGHT + number) };
             let Some(sample) = light.sample(self.start.origin, u) else { continue };
-            let unshadowed = response.direct(sample.dir, sample.solid_angle) * sample.radiance;
+            let unshadowed = direct(sample.dir, sample.solid_angle) * sample.radiance;
             if unshadowed != Rgb::ZERO {
                 proposals.push(Proposal { light: number, sample, unshadowed });
             }
@@ -100,27 +113,27 @@ impl Lit<'_> {
             if !light.legs(self.scene, start, sample, &mut scratch.legs) {
                 return Rgb::ZERO;
             }
-            return self.visible(light, &start, &scratch.legs, &mut scratch.crossings);
+            return self.visible(light, &start, &scratch.legs, &mut scratch.crossings, &mut scratch.memory);
         }
         let target = match light.source() {
             SourceId::Surface(surface) => Some(surface),
             SourceId::Far(_) => None,
         };
         let leg = Leg { ray: start, target, mirror: None };
-        self.visible(light, &start, std::slice::from_ref(&leg), &mut scratch.crossings)
+        self.visible(light, &start, std::slice::from_ref(&leg), &mut scratch.crossings, &mut scratch.memory)
     }
 
     /// The fraction of a light's radiance that is left at the hit, which sees it along `legs`.
-    fn visible(&self, light: &Light, start: &Ray, legs: &[Leg], crossings: &mut Vec<Hit>) -> Rgb {
+    fn visible(&self, light: &Light, start: &Ray, legs: &[Leg], crossings: &mut Vec<Hit>, memory: &mut Memory) -> Rgb {
         let mut fraction = Rgb::ONE;
         for leg in legs {
             match self.aggregate.shadow(&leg.ray, leg.target, crossings) {
                 Shadow::Blocked => return Rgb::ZERO,
-                Shadow::Refracted => return self.refracted(light, *start),
+                Shadow::Refracted => return self.refracted(light, *start, memory),
                 Shadow::Clear => {}
             }
             for hit in crossings.iter() {
-                match self.straight(light, hit, &leg.ray) {
+                match self.straight(light, hit, &leg.ray, memory) {
                     Some(passed) => fraction *= passed,
                     None => return Rgb::ZERO,
                 }
@@ -133,52 +146,43 @@ impl Lit<'_> {
             // Nothing bent the ray, so it did not leave the medium that the hit lies in.
             fraction *= transmittance(self.extinction, legs.iter().map(|leg| leg.ray.t_max).sum());
         }
+        if let (Some(dress), Some(last)) = (light.dress(), legs.last())
+            && fraction != Rgb::ZERO
+        {
+            fraction *= self.scene.tint(dress, &self.on_light(light, &last.ray), memory);
+        }
         fraction
     }
 
     /// The fraction that a surface lets through without bending the ray; `None` if it stops it.
-    fn straight(&self, light: &Light, hit: &Hit, ray: &Ray) -> Option<Rgb> {
-        let mut material = self.scene.material(hit.surface)?;
-        loop {
-            let interaction = || Interaction::new(ray.dir, hit.normal);
-            let passed = match material {
-                Material::Trans(trans) => trans.shadow(&interaction()),
-                Material::Glass(glass) => glass.shadow(&interaction()),
-                Material::Emitter(emitter) => {
-                    let EmitterKind::Illum(alternate) = emitter.kind() else { return None };
-                    // An illum already holds the light of the illums and glows behind it.
-                    let held = matches!(light.emitter().kind(), EmitterKind::Illum(_) | EmitterKind::Glow { .. });
-                    if held && hit.is_front(ray.dir) {
-                        return None;
-                    }
-                    match alternate {
-                        Alternate::None | Alternate::Void => Rgb::ONE,
-                        // An alternate is defined before what names it, so this comes to an end.
-                        Alternate::Material(id) => {
-                            material = &self.scene.materials[id.index()];
-                            continue;
-                        }
-                    }
-                }
-                Material::Plastic(_) | Material::Metal(_) | Material::Dielectric(_) | Material::Mirror(_) => {
-                    return None;
-                }
-            };
-            return (passed != Rgb::ZERO).then_some(passed);
+    fn straight(&self, light: &Light, hit: &Hit, ray: &Ray, memory: &mut Memory) -> Option<Rgb> {
+        let passed = passed(self.scene, light, self.scene.material(hit.surface)?, hit, ray, memory);
+        (passed != Rgb::ZERO).then_some(passed)
+    }
+
+    /// Where a ray that is aimed at a light meets it.
+    fn on_light(&self, light: &Light, ray: &Ray) -> Place<'_> {
+        match light.source() {
+            SourceId::Surface(surface) => {
+                let (point, normal) = self.scene.surface(surface).shape.settle(ray.at(ray.t_max));
+                place(self.scene, &Hit { t: ray.t_max, point, normal, surface }, ray)
+            }
+            SourceId::Far(_) => far_away(ray),
         }
     }
 
     /// What a mirror leaves of the light that it relays.
     fn mirrored(&self, surface: SurfaceId) -> Rgb {
-        match self.scene.material(surface) {
-            Some(Material::Mirror(mirror)) => mirror.reflectance(),
-            _ => Rgb::ZERO,
-        }
+        self.scene
+            .surface(surface)
+            .material
+            .and_then(|id| self.scene.mirror(id))
+            .map_or(Rgb::ZERO, |mirror| mirror.reflectance())
     }
 
     /// The fraction of a light's radiance that arrives by a ray which refracting solids bend: it counts if it comes to
     /// the light after all, over the mirrors that relay it.
-    fn refracted(&self, light: &Light, start: Ray) -> Rgb {
+    fn refracted(&self, light: &Light, start: Ray, memory: &mut Memory) -> Rgb {
         let mut ray = Ray { t_max: f64::INFINITY, ..start };
         let mut extinction = self.extinction;
         let mut fraction = Rgb::ONE;
@@ -190,13 +194,18 @@ impl Lit<'_> {
                     SourceId::Far(far) => self.scene.far[far.index()].contains(ray.dir),
                     SourceId::Surface(_) => false,
                 };
-                let weakened = fraction * transmittance(extinction, f64::INFINITY);
-                return if arrives && next.is_none() { weakened } else { Rgb::ZERO };
+                if !arrives || next.is_some() {
+                    return Rgb::ZERO;
+                }
+                let tint = light.dress().map_or(Rgb::ONE, |dress| self.scene.tint(dress, &far_away(&ray), memory));
+                return fraction * tint * transmittance(extinction, f64::INFINITY);
             };
             let front = hit.is_front(ray.dir);
             let material = self.scene.material(hit.surface);
-            if let (Some(Material::Dielectric(dielectric)), false) = (material, front) {
-                extinction = dielectric.extinction().as_vec3();
+            if let Some(Material::Dielectric(dielectric)) = material
+                && let Some(medium) = dielectric.medium(front)
+            {
+                extinction = medium.as_vec3();
             }
             fraction *= transmittance(extinction, hit.t);
             let mut dir = ray.dir;
@@ -208,7 +217,11 @@ impl Lit<'_> {
                 dir = Interaction::new(ray.dir, hit.normal).reflected();
                 next = mirrors.next();
             } else if next.is_none() && light.source() == SourceId::Surface(hit.surface) {
-                return if front { fraction } else { Rgb::ZERO };
+                if !front {
+                    return Rgb::ZERO;
+                }
+                let place = place(self.scene, &hit, &ray);
+                return fraction * light.dress().map_or(Rgb::ONE, |dress| self.scene.tint(dress, &place, memory));
             } else if let Some(Material::Dielectric(dielectric)) = material {
                 let Some((bent, coefficient, beyond)) = dielectric.shadow(&Interaction::new(ray.dir, hit.normal))
                 else {
@@ -217,7 +230,7 @@ impl Lit<'_> {
                 (dir, extinction) = (bent, beyond.as_vec3());
                 fraction *= coefficient;
             } else {
-                match self.straight(light, &hit, &ray) {
+                match self.straight(light, &hit, &ray, memory) {
                     Some(passed) => fraction *= passed,
                     None => return Rgb::ZERO,
                 }

@@ -11,6 +11,7 @@ use crate::component::Component;
 use crate::features::{Features, Wanted};
 use crate::geometry::SurfaceId;
 use crate::material::Interaction;
+use crate::pattern::Memory;
 use crate::raster::Raster;
 
 /// A pixel of all planes.
@@ -58,7 +59,8 @@ impl Tracer<'_> {
         let mut votes: Vec<(SurfaceId, u32)> = Vec::new();
         let (mut met, mut depth, mut normal, mut albedo) = (0_u32, 0.0_f64, Vec3::ZERO, Vec3::ZERO);
         for meeting in self.grid(samples, a_side, x, y) {
-            let Some((hit, material)) = meeting.hit else { continue };
+            let Some((hit, look)) = meeting.hit else { continue };
+            let Some(material) = look.material() else { continue };
             met += 1;
             depth += meeting.length;
             let side = if hit.is_front(meeting.ray.dir) { 1.0 } else { -1.0 };
@@ -95,12 +97,16 @@ impl Tracer<'_> {
         x: usize,
         y: usize,
     ) -> impl Iterator<Item = Meeting<'a>> {
+        /// Of mixed materials the one that covers more is seen.
+        const MIDDLE: f64 = 0.5;
+        let mut memory = Memory::default();
         let middle = move |i: usize| (i as f64 + 0.5) / a_side as f64;
         (0..a_side * a_side).filter_map(move |i| {
             let across = (x as f64 + middle(i % a_side)) / samples.width as f64;
             let down = (y as f64 + middle(i / a_side)) / samples.height as f64;
             let ray = samples.view.ray(across, down)?;
-            self.meet(&PathRay { ray, ripple: Rgb::ONE, path: RayPath::primary(0, 0) })
+            let path = PathRay { ray, ripple: Rgb::ONE, path: RayPath::primary(0, 0) };
+            self.meet(&path, MIDDLE, &mut memory)
         })
     }
 }

@@ -1,13 +1,18 @@
 //! One ray: what it meets, what that sends back at once, and what it spawns.
 
+use glam::DVec3;
+
 use crate::color::Rgb;
 use crate::film::Layers;
 use crate::geometry::{Aggregate, Hit, Ray};
-use crate::material::{Alternate, EmitterKind, Interaction, Material};
+use crate::material::{Bend, Interaction, Material};
+use crate::pattern::Memory;
 use crate::sample::Sampler;
 use crate::scene::Scene;
 
+use super::dimension;
 use super::direct::{Lit, Scratch};
+use super::look::{Look, Looker, far_away, place};
 use super::modulation::Modulation;
 use super::ray::{PathRay, transmittance};
 use super::spawn::{Departure, Limits, Spawner};
@@ -43,16 +48,6 @@ pub struct Tracer<'a> {
     pub modulation: Option<Modulation<'a>>,
 }
 
-/// What a ray sees in a surface.
-enum Seen<'a> {
-    /// The surface is not there.
-    Through,
-    /// Nothing comes from it.
-    Black,
-    /// A material.
-    Material(&'a Material),
-}
-
 impl<'a> Tracer<'a> {
     /// A tracer with the default settings: all that the low-level pass needs.
     #[must_use]
@@ -66,21 +61,25 @@ impl<'a> Tracer<'a> {
 impl Tracer<'_> {
     /// Traces a ray: adds what it brings to the planes, and puts what it spawns into the bins.
     pub(super) fn trace(&self, ray: &PathRay, sampler: &Sampler, scratch: &mut Scratch, spawner: &mut Spawner<'_>) {
-        let Some(meeting) = self.meet(ray) else { return };
-        let Meeting { hit, ray: last, length, .. } = meeting;
+        let Some(meeting) = self.meet(ray, self.mixing(sampler), &mut scratch.memory) else { return };
+        let Meeting { hit, ray: last, length } = meeting;
         let path = &ray.path;
-        let (hit, material) = match hit {
-            Some((hit, material)) => (hit, material),
-            None => {
-                let ripple = ray.ripple * transmittance(path.extinction, f64::INFINITY);
-                return self.file(ray, ripple * self.escaped(ray, &last), spawner);
-            }
+        let Some((hit, look)) = hit else {
+            let ripple = ray.ripple * transmittance(path.extinction, f64::INFINITY);
+            return self.file(ray, ripple * self.escaped(ray, &last, scratch), spawner);
+        };
+        let (material, bend) = match &look {
+            Look::Plain(material) => (*material, DVec3::ZERO),
+            Look::Dressed(material, bend) => (material, *bend),
+            Look::Through | Look::Black => return,
         };
 
         let front = hit.is_front(last.dir);
         // A ray that meets a solid's boundary from inside was in the solid, even if it started there (the eye).
         let extinction = match material {
-            Material::Dielectric(dielectric) if !front => dielectric.extinction().as_vec3(),
+            Material::Dielectric(dielectric) => {
+                dielectric.medium(front).map_or(path.extinction, |medium| medium.as_vec3())
+            }
             _ => path.extinction,
         };
         let ripple = ray.ripple * transmittance(extinction, length);
@@ -98,21 +97,37 @@ impl Tracer<'_> {
         let absorbed = f64::from(extinction.min_element()) * length;
         let weight = if absorbed > WEIGHTY_ABSORPTION { path.weight * (-absorbed).exp() as f32 } else { path.weight };
         let departure = Departure { path, ripple, weight, length, point: hit.point, surface: hit.surface };
-        let interaction = Interaction::new(last.dir, hit.normal);
-        let mut spawn = |lobe| spawner.spawn(&departure, &lobe, sampler);
+        let bent = (bend != DVec3::ZERO).then(|| Bend::new(last.dir, hit.normal, bend));
+        let interaction = match bent {
+            None => Interaction::new(last.dir, hit.normal),
+            Some(_) => Interaction::bent(last.dir, hit.normal, bend),
+        };
+        let mut spawn = |lobe| {
+            let lobe = bent.map_or(lobe, |bent| bent.adjust(lobe, material));
+            spawner.spawn(&departure, &lobe, sampler);
+        };
+        let lit = || {
+            let start = Ray::new(hit.point, last.dir).leaving(hit.surface);
+            let tests = match (path.blind, path.diffuse) {
+                (false, _) => SEEN_TESTS,
+                (true, 0 | 1) => NEAR_TESTS,
+                _ => FAR_TESTS,
+            };
+            Lit { scene: self.scene, aggregate: self.aggregate, start, extinction, tests }
+        };
         match material.respond(interaction) {
-            None => material.scatter(interaction, self.limits.glossy_threshold, &mut spawn),
+            None => {
+                material.scatter(interaction, self.limits.glossy_threshold, &mut spawn);
+                let place = place(self.scene, &hit, &last);
+                if let Some(light) = lit().own(material, (&interaction, &place, bend), sampler, scratch) {
+                    self.file(ray, ripple * light, spawner);
+                }
+            }
             Some(response) => {
                 response.scatter(self.limits.glossy_threshold, &mut spawn);
                 if !self.scene.lights.is_empty() && response.takes_direct_light() {
-                    let start = Ray::new(hit.point, last.dir).leaving(hit.surface);
-                    let lit = Lit { scene: self.scene, aggregate: self.aggregate, start, extinction };
-                    let tests = match (path.blind, path.diffuse) {
-                        (false, _) => SEEN_TESTS,
-                        (true, 0 | 1) => NEAR_TESTS,
-                        _ => FAR_TESTS,
-                    };
-                    self.file(ray, ripple * lit.light(&response, sampler, tests, scratch), spawner);
+                    let direct = |dir, solid_angle| response.direct(dir, solid_angle);
+                    self.file(ray, ripple * lit().light(direct, sampler, scratch), spawner);
                 }
             }
         }
@@ -125,8 +140,13 @@ impl Tracer<'_> {
         }
     }
 
-    /// Follows a ray through surfaces that are not there for it. `None` if nothing comes from where it ends.
-    pub(super) fn meet(&self, from: &PathRay) -> Option<Meeting<'_>> {
+    /// What chooses among the materials of mixtures.
+    fn mixing(&self, sampler: &Sampler) -> f64 {
+        if self.scene.has_dresses() { sampler.single(dimension::MIXTURE) } else { 0.0 }
+    }
+
+    /// Follows a ray through surfaces that are not there for it; `u` in [0,1) chooses among mixed materials. `None` if nothing comes from where it ends.
+    pub(super) fn meet(&self, from: &PathRay, u: f64, memory: &mut Memory) -> Option<Meeting<'_>> {
         let mut ray = from.ray;
         let mut length = 0.0;
         // A straight line meets no shape more than twice.
@@ -136,68 +156,34 @@ impl Tracer<'_> {
                 return ray.t_max.is_infinite().then_some(Meeting { hit: None, ray, length });
             };
             length += hit.t;
-            match self.seen(&hit, &ray, from.path.blind) {
-                Seen::Material(material) => return Some(Meeting { hit: Some((hit, material)), ray, length }),
-                Seen::Black => return None,
-                Seen::Through => {
+            let looker = Looker { scene: self.scene, ray, blind: from.path.blind, u };
+            match looker.look(&hit, memory) {
+                Look::Black => return None,
+                Look::Through => {
                     ray = Ray::new(hit.point, ray.dir).leaving(hit.surface).up_to(ray.t_max - hit.t);
                 }
+                look => return Some(Meeting { hit: Some((hit, look)), ray, length }),
             }
         }
         None
     }
 
-    /// What a ray sees in a surface: an illum or a mirror may be something else to it, or nothing (Radiance reference
-    /// manual).
-    fn seen(&self, hit: &Hit, ray: &Ray, blind: bool) -> Seen<'_> {
-        let Some(mut material) = self.scene.material(hit.surface) else { return Seen::Through };
-        let front = hit.is_front(ray.dir);
-        loop {
-            let alternate = match material {
-                Material::Emitter(emitter) => match emitter.kind() {
-                    // To rays that have counted its light already, the front of an illum is a light.
-                    EmitterKind::Illum(_) if front && blind => return Seen::Black,
-                    EmitterKind::Illum(alternate) => alternate,
-                    _ => return Seen::Material(material),
-                },
-                Material::Mirror(mirror) => {
-                    let alternate = mirror.alternate();
-                    let replaced = !front || !blind || self.is_transparent(alternate);
-                    if alternate == Alternate::None || !replaced {
-                        return Seen::Material(material);
-                    }
-                    alternate
-                }
-                _ => return Seen::Material(material),
-            };
-            match alternate {
-                Alternate::None | Alternate::Void => return Seen::Through,
-                // An alternate is defined before what names it, so this comes to an end.
-                Alternate::Material(id) => material = &self.scene.materials[id.index()],
-            }
-        }
-    }
-
-    fn is_transparent(&self, alternate: Alternate) -> bool {
-        match alternate {
-            Alternate::None => false,
-            Alternate::Void => true,
-            Alternate::Material(id) => self.scene.materials[id.index()].is_transparent(),
-        }
-    }
-
     /// Radiance that a ray sees which meets nothing.
-    fn escaped(&self, from: &PathRay, ray: &Ray) -> Rgb {
+    fn escaped(&self, from: &PathRay, ray: &Ray, scratch: &mut Scratch) -> Rgb {
         if self.scene.far.is_empty() {
             return Rgb::ZERO;
         }
         let Some(far) = self.scene.escaped(ray.dir) else { return Rgb::ZERO };
-        let material = self.scene.far[far.index()].material;
-        match &self.scene.materials[material.index()] {
-            Material::Emitter(emitter) if self.lights_visible || !emitter.illuminates() => {
-                emitter.seen(ray.dir, from.path.blind, f64::INFINITY)
-            }
-            _ => Rgb::ZERO,
+        let Some((emitter, dress)) = self.scene.emitter(self.scene.far[far.index()].material) else {
+            return Rgb::ZERO;
+        };
+        if emitter.illuminates() && !self.lights_visible {
+            return Rgb::ZERO;
+        }
+        let seen = emitter.seen(ray.dir, from.path.blind, f64::INFINITY);
+        match dress {
+            Some(dress) if seen != Rgb::ZERO => seen * self.scene.tint(dress, &far_away(ray), &mut scratch.memory),
+            _ => seen,
         }
     }
 }
@@ -205,7 +191,7 @@ impl Tracer<'_> {
 /// Where a ray ends.
 pub(super) struct Meeting<'a> {
     /// The surface and what it is to this ray; `None`: nothing was met.
-    pub(super) hit: Option<(Hit, &'a Material)>,
+    pub(super) hit: Option<(Hit, Look<'a>)>,
     /// The last piece of the ray.
     pub(super) ray: Ray,
     /// Length of all pieces.

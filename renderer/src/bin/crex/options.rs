@@ -264,6 +264,23 @@ impl RadianceOptions {
         Ok(())
     }
 
+    /// Takes the view of a .rif file in `folder`.
+    pub(crate) fn take_view(&mut self, words: &[String], folder: &Path) -> Result<(), String> {
+        let mut next = 0;
+        while next < words.len() {
+            if let ("-vf", Some(file)) = (words[next].as_str(), words.get(next + 1)) {
+                self.read_view(&folder.join(file))?;
+                next += 2;
+                continue;
+            }
+            let taken = self.view.take_option(&words[next..]).map_err(|error| error.message)?;
+            // Other options of rpict stand beside a view's.
+            next += taken.max(1);
+        }
+        self.view_given = true;
+        Ok(())
+    }
+
     /// A view from a view file or a picture's header.
     fn read_view(&mut self, file: &Path) -> Result<(), String> {
         let name = file.display().to_string();

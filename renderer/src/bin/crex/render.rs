@@ -8,6 +8,7 @@ use renderer::film::Layers;
 use renderer::importance::map::ImportanceMap;
 use renderer::importance::ran;
 use renderer::picture::{self, AtomicFile, Compression, Format, Input, Picture, Provenance, Quantity, grey};
+use renderer::rad::RifView;
 use renderer::raster::Raster;
 use renderer::render::{RenderError, Renderer, Rendering, Settings, Snapshot};
 use renderer::scene::{Scene, View};
@@ -33,6 +34,9 @@ pub(crate) struct Args {
     /// The picture: .exr with a layer for each component, .hdr or .png; `-` is HDR on standard output. May be repeated
     #[arg(short, long, value_name = "OUT", required = true)]
     output: Vec<PathBuf>,
+    /// The view of that name in a .rif file [default: its first, where no view is given by -vf, -vp and so on]
+    #[arg(long, value_name = "NAME")]
+    view: Option<String>,
     /// Samples for each pixel
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     spp: u32,
@@ -210,9 +214,11 @@ pub(crate) fn prepare(args: &Args, options: &RadianceOptions) -> Result<Prepared
         console::say("note", message);
     }
     let ast = plan::parse(&args.crex)?;
-    let LoadedScene { mut scene, inputs, files } = scene_files::load(&args.scene.scenes, &args.scene.search)?;
+    let LoadedScene { mut scene, inputs, files, views } = scene_files::load(&args.scene.scenes, &args.scene.search)?;
     scene.set_relays(options.relays);
     let scene_inputs = inputs.clone();
+    let with_view = rif_view(args.view.as_deref(), &views, options)?;
+    let options = with_view.as_ref().unwrap_or(options);
     let request = request(args, options, Program::new(&ast), inputs)?;
     let setting = Setting {
         components: Some(scene.components(options.glossy_threshold)),
@@ -223,6 +229,26 @@ pub(crate) fn prepare(args: &Args, options: &RadianceOptions) -> Result<Prepared
         console::say("warning", &warning.render(&args.crex));
     }
     Ok(Prepared { request, files, scene, scene_inputs })
+}
+
+/// The options with the view of that name, or the first one if no view is given otherwise.
+fn rif_view(
+    name: Option<&str>,
+    views: &[(RifView, String)],
+    options: &RadianceOptions,
+) -> Result<Option<RadianceOptions>, Failure> {
+    let chosen = match name {
+        Some(name) => Some(views.iter().find(|(view, _)| view.name.as_deref() == Some(name)).ok_or_else(|| {
+            let names: Vec<&str> = views.iter().filter_map(|(view, _)| view.name.as_deref()).collect();
+            Failure::input(format!("no .rif file has a view `{name}`; views: {}", names.join(", ")))
+        })?),
+        None if options.view_given => None,
+        None => views.first(),
+    };
+    let Some((view, folder)) = chosen else { return Ok(None) };
+    let mut options = options.clone();
+    options.take_view(&view.options, Path::new(folder)).map_err(Failure::input)?;
+    Ok(Some(options))
 }
 
 impl Prepared {

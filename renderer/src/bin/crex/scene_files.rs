@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use renderer::picture::Input;
-use renderer::rad::{self, Commands, DiskFiles, Document, Files, Source};
+use renderer::rad::{self, Commands, DiskFiles, Document, Files, Rif, RifView, Source};
 use renderer::scene::Scene;
 use stimuli::Sha256;
 
@@ -14,7 +14,7 @@ use crate::console::{self, Failure};
 /// What the commands that read scenes take.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct SceneArgs {
-    /// Scene files (.rad), read as one; `-` is standard input
+    /// Scene files (.rad, .rif), read as one, or an octree (.oct); `-` is standard input
     #[arg(value_name = "SCENE", required = true)]
     pub(crate) scenes: Vec<PathBuf>,
     #[command(flatten)]
@@ -61,20 +61,41 @@ pub(crate) struct LoadedScene {
     pub(crate) inputs: Vec<Input>,
     /// The files that were read, as they were found.
     pub(crate) files: Vec<PathBuf>,
+    /// The views that .rif files name, with their files' folders.
+    pub(crate) views: Vec<(RifView, String)>,
 }
 
 /// Reads scene files as one scene; warnings go to standard error.
 pub(crate) fn load(scenes: &[PathBuf], search: &SearchArgs) -> Result<LoadedScene, Failure> {
-    let sources = scenes.iter().map(|path| source(path)).collect::<Result<Vec<_>, _>>()?;
     let commands = search.allow_commands.then_some(&Shell as &dyn Commands);
     let options = rad::Options { commands, ..rad::Options::default() };
-    let document = rad::read(&sources, &search.files(), &options).map_err(|errors| told(&errors))?;
-    let scene = Scene::from_rad(&document).map_err(|errors| told(&errors))?;
+    let search_files = search.files();
+    let mut views = Vec::new();
+    let document = if let [only] = scenes
+        && has_extension(only, &["oct", "octf"])
+    {
+        rad::read_octree(&source(only)?, &search_files, &options)
+    } else {
+        let mut sources = Vec::new();
+        for path in scenes {
+            let text = source(path)?;
+            if has_extension(path, &["rif"]) {
+                let rif = Rif::read(&text).map_err(|errors| told(&errors))?;
+                sources.extend(rif.scene(&search_files, &text.folder).map_err(|errors| told(&errors))?);
+                views.extend(rif.views().into_iter().map(|view| (view, text.folder.clone())));
+            } else {
+                sources.push(text);
+            }
+        }
+        rad::read(&sources, &search_files, &options)
+    };
+    let document = document.map_err(|errors| told(&errors))?;
+    let scene = Scene::from_rad_with(&document, &search_files).map_err(|errors| told(&errors))?;
     for warning in document.warnings.iter().chain(&scene.warnings) {
         console::say("warning", &warning.to_string());
     }
     let files = document.sources.iter().map(|source| PathBuf::from(&source.name)).filter(|path| path.is_file());
-    Ok(LoadedScene { inputs: inputs(&document), files: files.collect(), scene })
+    Ok(LoadedScene { inputs: inputs(&document), files: files.collect(), scene, views })
 }
 
 fn source(path: &Path) -> Result<Source, Failure> {
@@ -84,14 +105,14 @@ fn source(path: &Path) -> Result<Source, Failure> {
         read.map_err(|error| Failure::Cannot(format!("standard input: {error}")))?;
         return Ok(Source::new("standard input", bytes));
     }
-    if path.extension().is_some_and(|extension| extension == "oct" || extension == "rif") {
-        let advice = "octrees and .rif files are not read yet: give the .rad files that they are made of";
-        return Err(Failure::input(format!("{}: {advice}", path.display())));
-    }
     let name = path.to_string_lossy();
     // The place that is given is the only one: RAYPATH is for what scenes name.
     let found = DiskFiles::default().find(&name, "");
     found.map(Source::from).map_err(|reason| Failure::input(format!("{name}: {reason}")))
+}
+
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|found| extensions.iter().any(|extension| found == *extension))
 }
 
 /// Each mistake with its place, the line and a caret.

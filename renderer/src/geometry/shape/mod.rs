@@ -3,6 +3,7 @@
 //! Each meets rays in `f64`, knows its own front, and can bring a nearby point back onto itself.
 
 mod cone;
+mod placed;
 mod polygon;
 mod probe;
 mod ring;
@@ -11,6 +12,7 @@ mod sphere;
 use glam::DVec3;
 
 pub use cone::Cone;
+pub use placed::Placed;
 pub use polygon::{Polygon, Triangle};
 pub use probe::Probe;
 pub use ring::Ring;
@@ -46,6 +48,8 @@ pub enum Shape {
     Cone(Cone),
     /// Annulus or disc.
     Ring(Ring),
+    /// Instance or mesh.
+    Placed(Placed),
 }
 
 impl Shape {
@@ -61,11 +65,13 @@ impl Shape {
             Self::Triangle(_) | Self::Polygon(_) | Self::Ring(_) => None,
             Self::Sphere(sphere) => sphere.meet(probe, leaving, t_min, t_max),
             Self::Cone(cone) => cone.meet(probe, leaving, t_min, t_max),
+            // Its surfaces have numbers of their own; the least distance keeps a ray from what it leaves.
+            Self::Placed(placed) => placed.meet(probe, t_min, t_max),
         }
     }
 
     /// The point of the surface nearest to a `point` that lies on it up to rounding, and the unit normal there on
-    /// the surface's front.
+    /// the surface's front. What is placed has no surface of its own: see [`Placed::hit`].
     #[must_use]
     pub fn settle(&self, point: DVec3) -> (DVec3, DVec3) {
         match self {
@@ -74,6 +80,7 @@ impl Shape {
             Self::Sphere(sphere) => sphere.settle(point),
             Self::Cone(cone) => cone.settle(point),
             Self::Ring(ring) => ring.settle(point),
+            Self::Placed(_) => (point, DVec3::Z),
         }
     }
 
@@ -86,10 +93,11 @@ impl Shape {
             Self::Sphere(sphere) => sphere.bounds(),
             Self::Cone(cone) => cone.bounds(),
             Self::Ring(ring) => ring.bounds(),
+            Self::Placed(placed) => placed.bounds(),
         }
     }
 
-    /// Area in the scene's unit squared.
+    /// Area in the scene's unit squared; of what is placed, none of its own.
     #[must_use]
     pub fn area(&self) -> f64 {
         match self {
@@ -98,6 +106,7 @@ impl Shape {
             Self::Sphere(sphere) => sphere.area(),
             Self::Cone(cone) => cone.area(),
             Self::Ring(ring) => ring.area(),
+            Self::Placed(_) => 0.0,
         }
     }
 
@@ -108,14 +117,14 @@ impl Shape {
             Self::Triangle(triangle) => Some((triangle.corners()[0], triangle.normal())),
             Self::Polygon(polygon) => Some((polygon.point(), polygon.normal())),
             Self::Ring(ring) => Some((ring.centre(), ring.normal())),
-            Self::Sphere(_) | Self::Cone(_) => None,
+            Self::Sphere(_) | Self::Cone(_) | Self::Placed(_) => None,
         }
     }
 
     /// Whether all of it lies in a plane.
     #[must_use]
     pub fn is_flat(&self) -> bool {
-        !matches!(self, Self::Sphere(_) | Self::Cone(_))
+        !matches!(self, Self::Sphere(_) | Self::Cone(_) | Self::Placed(_))
     }
 }
 

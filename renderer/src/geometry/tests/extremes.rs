@@ -191,6 +191,7 @@ fn turned(shape: &Shape, turn: DQuat, scale: f64, by: DVec3) -> Shape {
             let radii = r.radii().map(|radius| radius * scale);
             Shape::Ring(Ring::new(map(r.centre()), turn * r.normal(), radii).unwrap())
         }
+        Shape::Placed(_) => panic!("placed shapes are tested by themselves"),
         Shape::Cone(c) => {
             let (base, axis) = c.axis();
             let ends = [map(base), map(base + axis * c.length())];

@@ -255,6 +255,7 @@ fn moved(shape: &Shape, by: DVec3) -> Shape {
             Shape::Sphere(Sphere::new(s.centre() + by, radius).unwrap())
         }
         Shape::Ring(r) => Shape::Ring(Ring::new(r.centre() + by, r.normal(), r.radii()).unwrap()),
+        Shape::Placed(_) => panic!("placed shapes are tested by themselves"),
         Shape::Cone(c) => {
             let (base, axis) = c.axis();
             let ends = [base + by, base + axis * c.length() + by];
@@ -354,4 +355,48 @@ proptest! {
             prop_assert_eq!(a.map(|hit| hit.surface), b.map(|hit| hit.surface));
         }
     }
+}
+
+/// A group that is placed is met where its shapes would be if each were moved alone, and keeps their numbers.
+#[test]
+fn placed_shapes_are_met_as_if_each_were_moved() {
+    use super::shape::Placed;
+    use crate::math::Similarity;
+    use glam::DAffine3;
+
+    let mut numbers = Numbers(11);
+    let shapes: Vec<Shape> = (0..60).map(|_| some_shape(&mut numbers, 1.0, 0.3)).collect();
+    let bounds = shapes
+        .iter()
+        .map(Shape::bounds)
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], [a, b]| [low.min(a), high.max(b)]);
+    let group = std::sync::Arc::new(aggregate(shapes.clone()));
+    let place = DVec3::new(5.0, -3.0, 100.0);
+    let to_scene = Similarity { affine: DAffine3::from_translation(place), scale: 1.0 };
+    let turned = Similarity {
+        affine: to_scene.affine * DAffine3::from_scale(DVec3::splat(0.01)) * DAffine3::from_rotation_x(2.0),
+        scale: 0.01,
+    };
+    let by_moving = aggregate(shapes.iter().map(|shape| moved(shape, place)).collect::<Vec<_>>());
+    let by_placing = aggregate(vec![Shape::Placed(Placed::new(group.clone(), to_scene, 1000, bounds))]);
+    let by_turning = aggregate(vec![Shape::Placed(Placed::new(group, turned, 0, bounds))]);
+    let mut met = 0;
+    for _ in 0..2000 {
+        let (from, dir) = (numbers.point(2.0), numbers.direction());
+        let ray = Ray::new(place + from, dir);
+        let (expected, found) = (by_moving.closest(&ray), by_placing.closest(&ray));
+        assert_eq!(expected.is_some(), found.is_some());
+        let back = Ray::new(turned.point(from), turned.direction(dir));
+        let small = by_turning.closest(&back);
+        assert_eq!(expected.is_some(), small.is_some());
+        if let (Some(expected), Some(found), Some(small)) = (expected, found, small) {
+            met += 1;
+            assert_eq!(found.surface.0, 1000 + expected.surface.0);
+            assert_eq!(small.surface, expected.surface);
+            assert!((found.t - expected.t).abs() < 1e-9 && (small.t * 100.0 - expected.t).abs() < 1e-9);
+            assert!(found.normal.abs_diff_eq(expected.normal, 1e-9));
+            assert!(small.normal.abs_diff_eq(turned.direction(expected.normal), 1e-9));
+        }
+    }
+    assert!(met > 100, "{met}");
 }

@@ -3,15 +3,28 @@
 use std::collections::{BTreeSet, HashMap};
 
 use super::Reporter;
+use super::chain;
+use super::fields::{self, Sources};
+use super::files::Shelf;
+use super::programs;
 use crate::material::{
-    Alternate, ArgumentError, Dielectric, Emitter, Glass, Material, MaterialId, Metal, Mirror, Plastic, Trans,
+    Alternate, AntimatterId, ArgumentError, Dielectric, DressId, Emitter, Glass, Material, MaterialId, Metal, Mirror,
+    Plastic, ProgramId, Trans,
 };
-use crate::rad::{Argument, Class, Kind, Primitive};
+use crate::pattern::Step;
+use crate::rad::{self, Argument, Class, Files, Kind, Primitive};
+use crate::scene::Scene;
+use crate::scene::antimatter::Antimatter;
+use crate::scene::dress::{Base, Dress, MOST_LAYERS};
 
 /// The materials that were built, by their place in the document.
-#[derive(Default)]
-pub(super) struct Materials {
+pub(super) struct Materials<'a> {
     built: HashMap<usize, Option<MaterialId>>,
+    /// Dresses within dresses of those that have any.
+    layers: HashMap<usize, usize>,
+    /// Antimatter primitives.
+    pub(super) antimatters: Vec<(usize, AntimatterId)>,
+    pub(super) shelf: Shelf<'a>,
 }
 
 /// What is said of a type that the renderer cannot draw.
@@ -29,59 +42,159 @@ fn class_word(primitive: &Primitive) -> &'static str {
     }
 }
 
-impl Materials {
-    /// The material in the chain of modifiers that starts at `modifier`; `None` if it has none, or is wrong
-    /// (with an error). `user` is the primitive that asks.
+impl<'a> Materials<'a> {
+    pub(super) fn new(files: &'a dyn Files) -> Self {
+        Self { built: HashMap::new(), layers: HashMap::new(), antimatters: Vec::new(), shelf: Shelf::new(files) }
+    }
+
+    /// For another document, with the same files.
+    pub(super) fn another(&self) -> Self {
+        Self::new(self.shelf.files())
+    }
+
+    /// The material in the chain of modifiers that starts at `modifier`, with what it wears; `None` if it has none, or is
+    /// wrong (with an error). `user` is the primitive that asks.
     pub(super) fn of_modifier(
         &mut self,
         modifier: usize,
         user: usize,
-        materials: &mut Vec<Material>,
+        scene: &mut Scene,
         reporter: &mut Reporter,
     ) -> Option<MaterialId> {
         if let Some(&built) = self.built.get(&modifier) {
             return built;
         }
-        // Alternates are defined before who names them, so in ascending order each finds its own built.
+        // What a modifier names is defined before it, so in ascending order each finds its own built.
         let mut wanted = BTreeSet::new();
         let mut open = vec![modifier];
         while let Some(index) = open.pop() {
             if !self.built.contains_key(&index) && wanted.insert(index) {
-                open.extend(alternate_of(index, reporter));
+                open.extend(needs(index, reporter));
             }
         }
         for index in wanted {
-            let built = self.build(index, reporter).and_then(|material| {
-                let Ok(id) = u32::try_from(materials.len()) else {
-                    let primitive = &reporter.document.primitives[user];
-                    reporter.error(primitive, Argument::Modifier, "the scene has more than 2^32 materials");
-                    return None;
-                };
-                materials.push(material);
-                Some(MaterialId(id))
-            });
+            let built = self.build(index, user, scene, reporter);
             self.built.insert(index, built);
         }
         self.built.get(&modifier).copied().flatten()
     }
 
-    fn build(&self, index: usize, reporter: &mut Reporter) -> Option<Material> {
+    fn build(&mut self, index: usize, user: usize, scene: &mut Scene, reporter: &mut Reporter) -> Option<MaterialId> {
+        let document = reporter.document;
+        let primitive = &document.primitives[index];
+        match primitive.kind.class() {
+            Class::Material => {
+                let material = if primitive.kind == Kind::Antimatter {
+                    let over = primitive.strings.first().filter(|name| *name != "void");
+                    let over = match over {
+                        None => None,
+                        Some(_) => chain::mixed(primitive, index, 0, reporter)?,
+                    };
+                    let over = over.and_then(|over| self.built.get(&over).copied().flatten());
+                    let id = AntimatterId(u32::try_from(scene.antimatters.len()).ok()?);
+                    scene.antimatters.push(Antimatter::new(over));
+                    self.antimatters.push((index, id));
+                    Material::Antimatter(id)
+                } else if programs::is_programmed(primitive.kind) {
+                    let program =
+                        self.with_sources(scene, document, |sources| programs::read(primitive, sources, reporter))?;
+                    let id = ProgramId(u32::try_from(scene.programs.len()).ok()?);
+                    scene.programs.push(program);
+                    Material::Programmed(id)
+                } else {
+                    self.material(index, reporter)?
+                };
+                let base = add(scene, material, user, reporter)?;
+                if primitive.modifier.is_none() {
+                    return Some(base);
+                }
+                let above = primitive.modifier.map(|above| &document.primitives[above]);
+                if let Some(above) = above.filter(|above| above.kind.class() == Class::Material) {
+                    let message =
+                        format!("`{}` is a material already; its modifier `{}` is another", primitive.name, above.name);
+                    reporter.error(primitive, Argument::Kind, message);
+                    return None;
+                }
+                let steps =
+                    self.with_sources(scene, document, |sources| chain::steps(primitive.modifier, sources, reporter))?;
+                self.dress(index, steps, Base::Material(base), 0, user, scene, reporter)
+            }
+            Class::Mixture if chain::leads_to_material(Some(index), reporter) && mixes(index, reporter) => {
+                if let Some(above) = primitive.modifier {
+                    let message = format!(
+                        "a mixture of materials has no modifier, this one has `{}`",
+                        document.primitives[above].name
+                    );
+                    reporter.error(primitive, Argument::Modifier, message);
+                    return None;
+                }
+                let (fore, back) =
+                    (chain::mixed(primitive, index, 0, reporter)?, chain::mixed(primitive, index, 1, reporter)?);
+                let layers = [fore, back].iter().flatten().filter_map(|side| self.layers.get(side)).max().copied();
+                let [fore, back] =
+                    [fore, back].map(|side| side.and_then(|side| self.built.get(&side).copied().flatten()));
+                let part = self.with_sources(scene, document, |sources| fields::read(primitive, sources, reporter))?;
+                let base = Base::Mixture { part: Box::new(part), fore, back };
+                self.dress(index, Vec::new(), base, layers.unwrap_or(0), user, scene, reporter)
+            }
+            Class::Surface => None,
+            _ => {
+                let above = primitive.modifier?;
+                let base = self.built.get(&above).copied().flatten()?;
+                let layers = self.layers.get(&above).copied().unwrap_or(0);
+                let step =
+                    self.with_sources(scene, document, |sources| chain::step(index, primitive, sources, reporter))?;
+                // One dress for all that stands around a material.
+                if let Material::Dressed(id) = scene.materials[base.index()]
+                    && let Base::Material(_) = scene.dresses[id.index()].base
+                {
+                    let inner = scene.dresses[id.index()].clone();
+                    let steps = std::iter::once(step).chain(inner.steps.iter().cloned()).collect();
+                    return self.dress(index, steps, inner.base, layers.saturating_sub(1), user, scene, reporter);
+                }
+                self.dress(index, vec![step], Base::Material(base), layers, user, scene, reporter)
+            }
+        }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "private, and all of them are needed")]
+    fn dress(
+        &mut self,
+        index: usize,
+        steps: Vec<Step>,
+        base: Base,
+        layers: usize,
+        user: usize,
+        scene: &mut Scene,
+        reporter: &mut Reporter,
+    ) -> Option<MaterialId> {
         let primitive = &reporter.document.primitives[index];
-        if primitive.kind.class() != Class::Material {
-            reporter.error(primitive, Argument::Kind, unsupported(primitive));
+        if layers >= MOST_LAYERS {
+            let message = format!("mixtures within mixtures, more than {MOST_LAYERS} deep");
+            reporter.error(primitive, Argument::Kind, message);
             return None;
         }
-        if let Some(above) = primitive.modifier {
-            let above = &reporter.document.primitives[above];
-            let message = if above.kind.class() == Class::Material {
-                format!("`{}` is a material already; its modifier `{}` is another", primitive.name, above.name)
-            } else {
-                unsupported(above)
-            };
-            let at = if above.kind.class() == Class::Material { primitive } else { above };
-            reporter.error(at, Argument::Kind, message);
-            return None;
-        }
+        self.layers.insert(index, layers + 1);
+        let id = DressId(u32::try_from(scene.dresses.len()).ok()?);
+        scene.dresses.push(Dress { steps: steps.into(), base });
+        scene.library.get_or_insert_default();
+        add(scene, Material::Dressed(id), user, reporter)
+    }
+
+    /// Hands out what fields are read with.
+    fn with_sources<T>(
+        &mut self,
+        scene: &mut Scene,
+        document: &rad::Document,
+        read: impl FnOnce(&mut Sources<'_, 'a>) -> T,
+    ) -> T {
+        let library = scene.library.get_or_insert_default();
+        read(&mut Sources { shelf: &mut self.shelf, library, folders: &document.folders })
+    }
+
+    /// The material itself, without what it wears.
+    fn material(&self, index: usize, reporter: &mut Reporter) -> Option<Material> {
+        let primitive = &reporter.document.primitives[index];
         let reals = &primitive.reals;
         let built = match primitive.kind {
             Kind::Plastic => Plastic::from_reals(reals).map(Material::Plastic),
@@ -89,6 +202,7 @@ impl Materials {
             Kind::Trans => Trans::from_reals(reals).map(Material::Trans),
             Kind::Glass => Glass::from_reals(reals).map(Material::Glass),
             Kind::Dielectric => Dielectric::from_reals(reals).map(Material::Dielectric),
+            Kind::Interface => Dielectric::interface(reals).map(Material::Dielectric),
             Kind::Mirror => Mirror::from_reals(reals, self.alternate(index, reporter)?).map(Material::Mirror),
             Kind::Light => Emitter::light(reals).map(Material::Emitter),
             Kind::Glow => Emitter::glow(reals).map(Material::Emitter),
@@ -121,17 +235,38 @@ impl Materials {
     }
 }
 
-/// The primitive that a mirror or illum names as its alternate.
-fn alternate_of(index: usize, reporter: &Reporter) -> Option<usize> {
-    let primitive = &reporter.document.primitives[index];
-    if !matches!(primitive.kind, Kind::Mirror | Kind::Illum) {
+fn add(scene: &mut Scene, material: Material, user: usize, reporter: &mut Reporter) -> Option<MaterialId> {
+    let Ok(id) = u32::try_from(scene.materials.len()) else {
+        let primitive = &reporter.document.primitives[user];
+        reporter.error(primitive, Argument::Modifier, "the scene has more than 2^32 materials");
         return None;
+    };
+    scene.materials.push(material);
+    Some(MaterialId(id))
+}
+
+/// Whether a mixture blends materials and not only what materials wear.
+fn mixes(index: usize, reporter: &Reporter) -> bool {
+    let primitive = &reporter.document.primitives[index];
+    [0, 1].into_iter().any(|at| {
+        let side = chain::named(primitive, index, at, reporter).flatten();
+        chain::leads_to_material(side, reporter)
+    })
+}
+
+/// The modifiers that must be built before one: a mirror's or illum's alternate, a mixture's materials, what stands above
+/// a pattern.
+fn needs(index: usize, reporter: &Reporter) -> Vec<usize> {
+    let primitive = &reporter.document.primitives[index];
+    let named = |at| chain::named(primitive, index, at, reporter).flatten();
+    match primitive.kind.class() {
+        Class::Material if matches!(primitive.kind, Kind::Mirror | Kind::Illum | Kind::Antimatter) => {
+            named(0).into_iter().collect()
+        }
+        Class::Material | Class::Surface => Vec::new(),
+        Class::Mixture if mixes(index, reporter) => [named(0), named(1)].into_iter().flatten().collect(),
+        _ => primitive.modifier.into_iter().collect(),
     }
-    primitive
-        .strings
-        .first()
-        .filter(|name| *name != "void")
-        .and_then(|name| reporter.document.modifier_named(name, index))
 }
 
 fn report_argument(primitive: &Primitive, error: &ArgumentError, reporter: &mut Reporter) {

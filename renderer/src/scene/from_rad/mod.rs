@@ -3,14 +3,21 @@
 //! Only what surfaces use is built; a modifier that nothing uses may be of any type. What the renderer cannot draw is an error at
 //! the primitive's place, never left out silently.
 
+mod chain;
+mod cut;
+mod fields;
+mod files;
+mod groups;
 mod materials;
+mod programs;
 mod shapes;
 
 use super::light::Light;
 use super::{DEFAULT_RELAYS, FarId, FarSource, Scene, SourceId, Surface};
 use crate::geometry::{Shape, SurfaceId};
-use crate::material::{EmitterKind, Material, MaterialId};
-use crate::rad::{self, Argument, Class, Document, Kind, Primitive};
+use crate::material::{EmitterKind, MaterialId};
+use crate::rad::{self, Argument, Class, Document, Files, Kind, MemoryFiles, Primitive};
+use groups::Groups;
 use materials::Materials;
 
 /// Errors and warnings with their places, as many of each as one reads.
@@ -21,7 +28,11 @@ struct Reporter<'a> {
     unlisted_warnings: usize,
 }
 
-impl Reporter<'_> {
+impl<'a> Reporter<'a> {
+    fn new(document: &'a Document) -> Self {
+        Self { document, errors: Vec::new(), warnings: Vec::new(), unlisted_warnings: 0 }
+    }
+
     fn error(&mut self, primitive: &Primitive, argument: Argument, message: impl Into<String>) {
         if !self.full() {
             self.errors.push(self.document.argument_error(primitive, argument, message));
@@ -49,13 +60,29 @@ impl Scene {
     /// Every primitive that is not supported yet or has an argument out of range, with its place; at most
     /// [`rad::MAX_ERRORS`].
     pub fn from_rad(document: &Document) -> Result<Self, Vec<rad::Error>> {
-        let reporter = Reporter { document, errors: Vec::new(), warnings: Vec::new(), unlisted_warnings: 0 };
-        let mut builder = Builder { document, reporter, scene: Self::default(), materials: Materials::default() };
+        Self::from_rad_with(document, &MemoryFiles::new())
+    }
+
+    /// As [`Self::from_rad`]; `files` finds the function files, data, pictures, fonts and texts that primitives name.
+    ///
+    /// # Errors
+    /// Files that are missing or wrong besides.
+    pub fn from_rad_with(document: &Document, files: &dyn Files) -> Result<Self, Vec<rad::Error>> {
+        let mut builder = Builder {
+            document,
+            reporter: Reporter::new(document),
+            scene: Self::default(),
+            materials: Materials::new(files),
+            groups: Groups::default(),
+            placed_by: Vec::new(),
+            within: false,
+        };
         for (index, primitive) in document.primitives.iter().enumerate() {
             if primitive.kind.class() == Class::Surface && !builder.reporter.full() {
                 builder.add_surface(index, primitive);
             }
         }
+        builder.cut();
         let Builder { reporter, mut scene, .. } = builder;
         if !reporter.errors.is_empty() {
             return Err(reporter.errors);
@@ -74,22 +101,23 @@ struct Builder<'a> {
     document: &'a Document,
     reporter: Reporter<'a>,
     scene: Scene,
-    materials: Materials,
+    materials: Materials<'a>,
+    groups: Groups,
+    /// The surfaces with their modifiers' places in the document.
+    placed_by: Vec<(SurfaceId, usize)>,
+    /// Whether this is the content of an instance.
+    within: bool,
 }
 
 impl Builder<'_> {
     fn add_surface(&mut self, index: usize, primitive: &Primitive) {
         let material = match primitive.modifier {
-            Some(modifier) => {
-                self.materials.of_modifier(modifier, index, &mut self.scene.materials, &mut self.reporter)
-            }
+            Some(modifier) => self.materials.of_modifier(modifier, index, &mut self.scene, &mut self.reporter),
             None => None,
         };
         match primitive.kind {
             Kind::Source => self.add_far(primitive, material),
-            Kind::Instance | Kind::Mesh => {
-                self.reporter.error(primitive, Argument::Kind, materials::unsupported(primitive));
-            }
+            Kind::Instance | Kind::Mesh => self.add_group(primitive, material),
             _ => {
                 if let Some(shape) = shapes::read(primitive, &mut self.reporter) {
                     self.add_shape(primitive, material, shape);
@@ -104,12 +132,13 @@ impl Builder<'_> {
             return;
         };
         let id = SurfaceId(id);
-        if let Some(Material::Emitter(emitter)) = material.map(|id| &self.scene.materials[id.index()])
+        if let Some((emitter, dress)) = material.and_then(|id| self.scene.emitter(id))
             && emitter.illuminates()
         {
-            self.scene.lights.push(Light::of_surface(id, &shape, *emitter));
+            let light = Light::of_surface(id, &shape, *emitter).dressed(dress);
+            self.scene.lights.push(light);
         }
-        let mirror = material.is_some_and(|id| matches!(self.scene.materials[id.index()], Material::Mirror(_)));
+        let mirror = material.is_some_and(|id| self.scene.mirror(id).is_some());
         if mirror && !shape.is_flat() {
             let message = format!(
                 "mirror `{}` is curved, so it reflects what is seen but casts no light; only polygons and rings do",
@@ -117,19 +146,25 @@ impl Builder<'_> {
             );
             self.reporter.warn(primitive, Argument::Kind, message);
         }
-        self.scene.surfaces.push(Surface {
+        let surface = self.surface(primitive, material, shape);
+        self.scene.surfaces.push(surface);
+        self.placed_by.extend(primitive.modifier.map(|modifier| (id, modifier)));
+    }
+
+    fn surface(&mut self, primitive: &Primitive, material: Option<MaterialId>, shape: Shape) -> Surface {
+        Surface {
             shape,
             material,
             name: self.scene.names.id(&primitive.name),
             modifier: primitive.modifier.map(|index| self.scene.names.id(&self.document.primitives[index].name)),
             precedence: primitive.modifier.and_then(|index| u32::try_from(index + 1).ok()).unwrap_or(0),
-        });
+        }
     }
 
     fn add_far(&mut self, primitive: &Primitive, material: Option<MaterialId>) {
         let Some((axis, angle_deg)) = shapes::read_source(primitive, &mut self.reporter) else { return };
         let Some(material) = material else { return };
-        let Material::Emitter(emitter) = self.scene.materials[material.index()] else {
+        let Some((&emitter, dress)) = self.scene.emitter(material) else {
             let message = format!(
                 "source `{}` does not show: its material does not emit; use light, glow or illum",
                 primitive.name
@@ -149,7 +184,9 @@ impl Builder<'_> {
         let far = FarSource::new(material, self.scene.names.id(&primitive.name), axis, angle_deg);
         // A distant glow is sky: found by diffuse rays, not aimed at, whatever its radius.
         if emitter.illuminates() && !matches!(emitter.kind(), EmitterKind::Glow { .. }) {
-            self.scene.lights.push(Light::distant(SourceId::Far(FarId(id)), axis, far.versine(), emitter));
+            self.scene
+                .lights
+                .push(Light::distant(SourceId::Far(FarId(id)), axis, far.versine(), emitter).dressed(dress));
         }
         self.scene.far.push(far);
     }

@@ -85,15 +85,11 @@ grey cylinder stub 0 0 7 1 2 3 1 2 3 1\n  grey ring gap 0 0 8 0 0 0 0 0 1 1 1\ng
 fn errors_have_places() {
     let table = [
         ("void mist fog 0 0 0\nfog sphere s 0 0 4 0 0 0 1", "1:6", "`mist` is not supported yet"),
-        (
-            "void plastic2 p 4 1 0 0 . 0 6 1 1 1 0 .1 .1\np sphere s 0 0 4 0 0 0 1",
-            "1:6",
-            "`plastic2` is not supported yet",
-        ),
+        ("void plastic2 p 4 1 0 0 . 0 6 1 1 1 0 .1 0\np sphere s 0 0 4 0 0 0 1", "1:42", "v-roughness"),
         (
             "void brightfunc dots 2 dots . 0 0\ndots plastic p 0 0 5 1 1 1 0 0\np sphere s 0 0 4 0 0 0 1",
-            "1:6",
-            "pattern `dots`: the type `brightfunc` is not supported yet",
+            "1:24",
+            "variable `dots` is not defined",
         ),
         (
             "void plastic q 0 0 5 1 1 1 0 0\nq plastic p 0 0 5 1 1 1 0 0\np sphere s 0 0 4 0 0 0 1",
@@ -108,7 +104,7 @@ fn errors_have_places() {
         ("void light l 0 0 3 1 1 1\nl source s 0 0 4 0 0 0 1", "2:18", "0 0 0"),
         ("void light l 0 0 3 1 1 1\nl source s 0 0 4 0 0 1 361", "2:24", "0 to 360"),
         ("void illum i 1 none 0 3 1 1 1\ni sphere s 0 0 4 0 0 0 1", "1:16", "`none` is no material defined before"),
-        ("void plastic p 0 0 5 1 1 1 0 0\np instance i 1 x.oct 0 0", "2:3", "`instance` is not supported yet"),
+        ("void plastic p 0 0 5 1 1 1 0 0\np instance i 1 x.oct 0 0", "2:16", "the file `x.oct` is not found"),
     ];
     for (text, place, message) in table {
         let error = build(text).unwrap_err();

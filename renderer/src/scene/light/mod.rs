@@ -14,7 +14,7 @@ use glam::DVec3;
 use super::SourceId;
 use crate::color::Rgb;
 use crate::geometry::{Shape, SurfaceId};
-use crate::material::{Emitter, EmitterKind};
+use crate::material::{DressId, Emitter, EmitterKind};
 
 pub use relay::Leg;
 use relay::Plane;
@@ -26,6 +26,8 @@ use sampler::Sampler;
 pub struct Light {
     source: SourceId,
     emitter: Emitter,
+    /// Its patterns.
+    dress: Option<DressId>,
     sampler: Sampler,
     /// The mirrors between a lit point and the source, nearest to the point first.
     relay: Vec<SurfaceId>,
@@ -49,13 +51,31 @@ impl Light {
     /// A light of a surface's shape.
     pub(super) fn of_surface(surface: SurfaceId, shape: &Shape, emitter: Emitter) -> Self {
         let sampler = Sampler::of_shape(shape);
-        Self { source: SourceId::Surface(surface), emitter, sampler, relay: Vec::new(), planes: Vec::new() }
+        Self {
+            source: SourceId::Surface(surface),
+            emitter,
+            dress: None,
+            sampler,
+            relay: Vec::new(),
+            planes: Vec::new(),
+        }
     }
 
     /// A distant light, `versine` being 1 - cosine of its half angle.
     pub(super) fn distant(source: SourceId, axis: DVec3, versine: f64, emitter: Emitter) -> Self {
         let sampler = Sampler::Distant { axis, versine };
-        Self { source, emitter, sampler, relay: Vec::new(), planes: Vec::new() }
+        Self { source, emitter, dress: None, sampler, relay: Vec::new(), planes: Vec::new() }
+    }
+
+    /// The same light with patterns.
+    pub(super) fn dressed(self, dress: Option<DressId>) -> Self {
+        Self { dress, ..self }
+    }
+
+    /// The patterns that its radiance is multiplied by.
+    #[must_use]
+    pub fn dress(&self) -> Option<DressId> {
+        self.dress
     }
 
     /// What shines.

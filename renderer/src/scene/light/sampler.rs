@@ -38,6 +38,8 @@ impl Sampler {
             Shape::Ring(ring) => flat(Patch::of_ring(ring), ring.normal()),
             Shape::Sphere(sphere) => Self::Sphere(*sphere),
             Shape::Cone(cone) => Self::Cone(*cone),
+            // Instances and meshes are no lights, as in Radiance.
+            Shape::Placed(_) => Self::Distant { axis: DVec3::Z, versine: 0.0 },
         }
     }
 
