@@ -10,6 +10,7 @@ use crate::pattern::{Evaluator, Field, Law, Memory, Place, Reflection};
 
 /// A material before its functions have been asked.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "a scene has few of them")]
 pub(super) enum Program {
     /// With the axis of its gloss.
     Anisotropic(Anisotropic, Field),

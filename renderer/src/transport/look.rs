@@ -10,6 +10,7 @@ use crate::pattern::{Finish, Memory, Place};
 use crate::scene::{Light, Scene, Worn};
 
 /// What a ray sees in a surface.
+#[allow(clippy::large_enum_variant, reason = "made anew at every hit, where nothing should be allocated")]
 pub(super) enum Look<'a> {
     /// The surface is not there.
     Through,
