@@ -17,7 +17,7 @@ const RENDERER_ARROWS: &[(&str, &[&str])] = &[
     ("cal", &["diagnostic"]),
     ("rad", &["cal", "diagnostic"]),
     ("crex", &["component", "work"]),
-    ("pattern", &["cal", "color", "math"]),
+    ("pattern", &["cal", "color", "diagnostic", "math"]),
     ("material", &["component", "color", "math", "pattern", "sample"]),
     ("geometry", &["math"]),
     ("scene", &["rad", "material", "geometry", "color", "component", "math", "pattern", "picture", "cal", "sample"]),
