@@ -9,6 +9,10 @@ use renderer::picture::{self, Compression, Picture, Provenance, Quantity};
 use renderer::raster::Raster;
 use serde_json::Value;
 
+/// A display file.
+const DISPLAY: &str =
+    "peak_cd_m2 = 250\nblack_cd_m2 = 0.5\nwidth_px = 1280\nheight_px = 1024\nwidth_m = 0.3372\ndistance_m = 0.6\n";
+
 fn crex(words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_crex")).args(words).stdin(Stdio::null()).output().unwrap()
 }
@@ -122,17 +126,49 @@ fn compare_sees_as_people_do_on_a_display() {
     let values = |bump: f32| (0..64 * 64).map(|i| 0.5 + bump * f32::from(i % 64 / 8 % 2 == 0)).collect::<Vec<f32>>();
     grey(&a, 64, &values(0.0));
     grey(&b, 64, &values(0.2));
-    std::fs::write(
-        &display,
-        "peak_cd_m2 = 250\nblack_cd_m2 = 0.5\nwidth_px = 1280\nheight_px = 1024\nwidth_m = 0.3372\ndistance_m = 0.6\n",
-    )
-    .unwrap();
+    std::fs::write(&display, DISPLAY).unwrap();
     let (a, b, display) = (a.to_str().unwrap(), b.to_str().unwrap(), display.to_str().unwrap());
     let same = json(&crex(&["compare", a, a, "--json", "--display", display]));
     assert_eq!((same["flip"].as_f64().unwrap(), same["jod"].as_f64().unwrap()), (0.0, 10.0));
     let differs = json(&crex(&["compare", a, b, "--json", "--display", display]));
     assert!(differs["flip"].as_f64().unwrap() > 0.02, "{differs}");
     assert!(differs["jod"].as_f64().unwrap() < 9.5, "{differs}");
+}
+
+#[test]
+fn compare_judges_a_part_by_itself_and_shows_where_the_two_differ() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    for (name, right) in [("a.exr", 0.4), ("b.exr", 0.2)] {
+        let values: Vec<f32> = (0..64 * 64).map(|i| if i % 64 < 32 { 0.4 } else { right }).collect();
+        grey(Path::new(&path(name)), 64, &values);
+    }
+    let map = (0..32 * 32).map(|i| if i % 32 < 8 { 1.0 } else { 0.25 }).collect();
+    let map = Raster::from_values(32, 32, map).unwrap();
+    picture::grey::write(Path::new(&path("map.png")), &map, picture::grey::Bits::Eight, &Provenance::default())
+        .unwrap();
+    std::fs::write(path("display.toml"), DISPLAY).unwrap();
+    let (a, b, display, map) = (path("a.exr"), path("b.exr"), path("display.toml"), path("map.png"));
+    let words = ["compare", &a, &b, "--json", "--display", &display, "--map", &map, "--difference", &path("where.png")];
+    let output = crex(&words);
+    let report = json(&output);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert_eq!(number(&report["region"]["share"]), 0.25);
+    assert_eq!(
+        (number(&report["region"]["jod"]), number(&report["region"]["flip"])),
+        (10.0, 0.0),
+        "the left quarter is alike"
+    );
+    assert!(number(&report["jod"]) < 9.5, "{report}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("map.png has 32 x 32 pixels, the pictures 64 x 64"));
+    let shown = picture::read(Path::new(&path("where.png"))).unwrap().beauty;
+    let light = |x: usize| shown.at(x, 20).iter().sum::<f32>();
+    assert!(light(50) > 2.0 * light(5), "bright where they differ: {} {}", light(50), light(5));
+    let all = json(&crex(&["compare", &a, &b, "--json", "--display", &display, "--map", &map, "--at-least", "0.2"]));
+    assert!((number(&all["region"]["jod"]) - number(&all["jod"])).abs() < 1e-5);
+    let none = crex(&["compare", &a, &b, "--display", &display, "--map", &map, "--at-least", "2"]);
+    assert_eq!(none.status.code(), Some(2));
+    assert_eq!(crex(&["compare", &a, &b, "--map", &map]).status.code(), Some(2), "a region is judged on a display");
 }
 
 #[test]

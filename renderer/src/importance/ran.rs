@@ -111,7 +111,8 @@ fn fill(picture: &mut Raster<Rgb>, (x, y): (usize, usize), (width, height): (usi
 }
 
 /// Dark blue over green to yellow, `t` in [0, 1]: sRGB codes between which lightness rises nearly evenly.
-pub(super) fn ramp(t: f64) -> Rgb {
+#[must_use]
+pub fn ramp(t: f64) -> Rgb {
     const STOPS: [[f64; 3]; 5] =
         [[0.13, 0.10, 0.35], [0.20, 0.30, 0.60], [0.10, 0.52, 0.55], [0.40, 0.74, 0.35], [0.98, 0.90, 0.20]];
     let place = t.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;

@@ -29,6 +29,9 @@ pub enum CompareError {
     /// They differ in size.
     #[error("the reference is {0} x {1} pixels, the picture {2} x {3}: render both at one size")]
     Size(usize, usize, usize, usize),
+    /// A region has another size.
+    #[error("the region is {0} x {1} pixels, the pictures {2} x {3}: resize the map")]
+    Region(usize, usize, usize, usize),
     /// One is radiance, the other display light.
     #[error("one picture holds radiance (EXR, HDR), the other display light (PNG): compare two of a kind")]
     Quantity,

@@ -17,6 +17,7 @@ mod hdr;
 mod perceptual;
 mod png;
 mod provenance;
+pub mod region;
 mod rgbe;
 mod write;
 

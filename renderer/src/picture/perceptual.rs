@@ -38,6 +38,25 @@ pub struct Jod {
     pub map: Raster<f32>,
 }
 
+/// ColorVideoVDP's last step, from pooled difference to JOD (its parameters of version 0.5.7).
+const JOD_SCALE: f64 = 0.043_956_939_131_021_5;
+const JOD_EXPONENT: f64 = 0.930_204_272_270_202_6;
+/// Below this difference JOD falls along a straight line.
+const STRAIGHT_UP_TO: f64 = 0.1;
+
+/// The JOD of a pooled difference, 0 or more.
+pub(super) fn jod_of(pooled: f64) -> f64 {
+    let straight = STRAIGHT_UP_TO.powf(JOD_EXPONENT - 1.0) * pooled;
+    10.0 - JOD_SCALE * if pooled <= STRAIGHT_UP_TO { straight } else { pooled.powf(JOD_EXPONENT) }
+}
+
+/// The pooled difference behind a JOD.
+pub(super) fn pooled_difference(jod: f64) -> f64 {
+    let scaled = (10.0 - jod).max(0.0) / JOD_SCALE;
+    let straight = scaled * STRAIGHT_UP_TO.powf(1.0 - JOD_EXPONENT);
+    if straight <= STRAIGHT_UP_TO { straight } else { scaled.powf(1.0 / JOD_EXPONENT) }
+}
+
 /// ColorVideoVDP of Mantiuk et al. 2024, free viewing, for still pictures.
 pub(super) fn jod(
     reference: &Picture,
@@ -136,6 +155,16 @@ mod tests {
         assert!((score(&strong) - 8.414_714).abs() < 1e-4, "{}", score(&strong));
         assert!((score(&weak) - 9.983_167).abs() < 1e-4, "{}", score(&weak));
         assert_eq!(score(&reference), 10.0);
+    }
+
+    #[test]
+    fn jod_and_pooled_difference_are_inverse() {
+        for pooled in [0.0, 1e-6, 0.05, 0.1, 0.100_001, 1.0, 30.0] {
+            let back = pooled_difference(jod_of(pooled));
+            assert!((back - pooled).abs() <= 1e-9 * pooled.max(1e-3), "{pooled} {back}");
+        }
+        assert_eq!(jod_of(0.0), 10.0);
+        assert_eq!(pooled_difference(10.5), 0.0);
     }
 
     /// Radiance is judged as it would be shown.

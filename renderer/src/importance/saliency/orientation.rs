@@ -43,17 +43,17 @@ pub(super) fn gabor_energy(plane: &Plane, angle_deg: f64) -> Plane {
     let scale = (1.0 / envelope) as f32;
 
     let mut rows = vec![[0.0_f32; 3]; width * height];
-    for y in 0..height {
-        let source = &plane.values()[y * width..(y + 1) * width];
-        for x in 0..width {
-            let mut sum = [0.0_f32; 3];
-            for k in 0..TAPS {
-                let value = source[mirrored(x, k as isize - REACH as isize, width)];
+    let mut padded = vec![0.0_f32; width + 2 * REACH];
+    for (source, row) in plane.values().chunks_exact(width).zip(rows.chunks_exact_mut(width)) {
+        for (i, value) in padded.iter_mut().enumerate() {
+            *value = source[mirrored(0, i as isize - REACH as isize, width)];
+        }
+        for (near, sum) in padded.windows(TAPS).zip(row) {
+            for (k, &value) in near.iter().enumerate() {
                 sum[0] += across[k].0 * value;
                 sum[1] += across[k].1 * value;
                 sum[2] += flat[k].0 * value;
             }
-            rows[y * width + x] = sum;
         }
     }
     let mut out = vec![0.0_f32; width * height];
