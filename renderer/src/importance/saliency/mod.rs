@@ -156,16 +156,27 @@ fn normalised(map: Plane) -> Plane {
 /// Mean of the strict local maxima (eight neighbours, borders included) except the largest; 0 where there is none.
 fn mean_of_other_maxima(map: &Plane) -> f32 {
     let (width, height) = (map.width(), map.height());
+    let values = map.values();
     let (mut sum, mut count, mut largest) = (0.0_f64, 0_u32, f32::MIN);
+    let row = |y: usize| &values[y * width..(y + 1) * width];
     for y in 0..height {
-        for x in 0..width {
-            let here = *map.at(x, y);
-            let rows = y.saturating_sub(1)..(y + 2).min(height);
-            let top = rows.flat_map(|v| (x.saturating_sub(1)..(x + 2).min(width)).map(move |u| (u, v)));
-            if top.into_iter().all(|(u, v)| (u, v) == (x, y) || *map.at(u, v) < here) {
-                sum += f64::from(here);
+        let here = row(y);
+        // Beyond the border there is nothing to be exceeded by.
+        let above = (y > 0).then(|| row(y - 1));
+        let below = (y + 1 < height).then(|| row(y + 1));
+        for (x, &value) in here.iter().enumerate() {
+            // Most pixels fail at their first neighbours.
+            let left = x == 0 || here[x - 1] < value;
+            if !(left && (x + 1 == width || here[x + 1] < value)) {
+                continue;
+            }
+            let near = x.saturating_sub(1)..(x + 2).min(width);
+            let lower =
+                |row: Option<&[f32]>| row.is_none_or(|row| row[near.clone()].iter().all(|&other| other < value));
+            if lower(above) && lower(below) {
+                sum += f64::from(value);
                 count += 1;
-                largest = largest.max(here);
+                largest = largest.max(value);
             }
         }
     }

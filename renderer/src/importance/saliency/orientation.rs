@@ -42,39 +42,48 @@ pub(super) fn gabor_energy(plane: &Plane, angle_deg: f64) -> Plane {
     let mean = (total(&across) * total(&down) / envelope) as f32;
     let scale = (1.0 / envelope) as f32;
 
-    let mut rows = vec![[0.0_f32; 3]; width * height];
+    // A plane for each of the three sums, so that the innermost loops run along rows.
+    let mut rows = [(); 3].map(|()| vec![0.0_f32; width * height]);
     let mut padded = vec![0.0_f32; width + 2 * REACH];
-    for (source, row) in plane.values().chunks_exact(width).zip(rows.chunks_exact_mut(width)) {
+    for (y, source) in plane.values().chunks_exact(width).enumerate() {
         for (i, value) in padded.iter_mut().enumerate() {
             *value = source[mirrored(0, i as isize - REACH as isize, width)];
         }
-        for (near, sum) in padded.windows(TAPS).zip(row) {
-            for (k, &value) in near.iter().enumerate() {
-                sum[0] += across[k].0 * value;
-                sum[1] += across[k].1 * value;
-                sum[2] += flat[k].0 * value;
+        for k in 0..TAPS {
+            for (sums, tap) in rows.iter_mut().zip([across[k].0, across[k].1, flat[k].0]) {
+                add_scaled(&mut sums[y * width..(y + 1) * width], &padded[k..k + width], tap);
             }
         }
     }
+    let [even, odd, round] = rows;
     let mut out = vec![0.0_f32; width * height];
-    let mut sums = vec![[0.0_f32; 3]; width];
-    for y in 0..height {
-        sums.fill([0.0; 3]);
+    let mut sums = [(); 3].map(|()| vec![0.0_f32; width]);
+    for (y, out) in out.chunks_exact_mut(width).enumerate() {
+        sums.iter_mut().for_each(|sum| sum.fill(0.0));
         for k in 0..TAPS {
             let from = mirrored(y, k as isize - REACH as isize, height) * width;
-            let ((even, odd), round) = (down[k], flat[k].0);
-            for (sum, row) in sums.iter_mut().zip(&rows[from..from + width]) {
-                sum[0] += row[0] * even - row[1] * odd;
-                sum[1] += row[0] * odd + row[1] * even;
-                sum[2] += row[2] * round;
-            }
+            let row = from..from + width;
+            let [sum_even, sum_odd, sum_round] = &mut sums;
+            add_scaled(sum_even, &even[row.clone()], down[k].0);
+            add_scaled(sum_even, &odd[row.clone()], -down[k].1);
+            add_scaled(sum_odd, &even[row.clone()], down[k].1);
+            add_scaled(sum_odd, &odd[row.clone()], down[k].0);
+            add_scaled(sum_round, &round[row], flat[k].0);
         }
-        for (value, sum) in out[y * width..(y + 1) * width].iter_mut().zip(&sums) {
-            let (even, odd) = ((sum[0] - mean * sum[2]) * scale, sum[1] * scale);
+        let [even, odd, round] = &sums;
+        for (((value, even), odd), round) in out.iter_mut().zip(even).zip(odd).zip(round) {
+            let (even, odd) = ((even - mean * round) * scale, odd * scale);
             *value = (even * even + odd * odd).sqrt();
         }
     }
     Raster::from_values(width, height, out).expect("one value a pixel was made")
+}
+
+/// `sums` + `factor` x `values`, term by term.
+fn add_scaled(sums: &mut [f32], values: &[f32], factor: f32) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += factor * value;
+    }
 }
 
 #[cfg(test)]

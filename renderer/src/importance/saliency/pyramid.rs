@@ -75,12 +75,14 @@ pub(super) fn expanded(coarse: &Plane, octaves: u32, width: usize, height: usize
     };
     let columns = weights(width, coarse.width());
     let mut out = Vec::with_capacity(width * height);
+    // Along the rows first: a coarse row is read by many fine ones.
+    let along = |row: usize| -> Vec<f32> {
+        let row = &coarse.values()[row * coarse.width()..(row + 1) * coarse.width()];
+        columns.iter().map(|&(left, right, share)| row[left] * (1.0 - share) + row[right] * share).collect()
+    };
+    let rows: Vec<Vec<f32>> = (0..coarse.height()).map(along).collect();
     for (low, high, part) in weights(height, coarse.height()) {
-        for &(left, right, share) in &columns {
-            let upper = *coarse.at(left, low) * (1.0 - share) + *coarse.at(right, low) * share;
-            let lower = *coarse.at(left, high) * (1.0 - share) + *coarse.at(right, high) * share;
-            out.push(upper * (1.0 - part) + lower * part);
-        }
+        out.extend(rows[low].iter().zip(&rows[high]).map(|(upper, lower)| upper * (1.0 - part) + lower * part));
     }
     Raster::from_values(width, height, out).expect("one value a pixel was made")
 }
