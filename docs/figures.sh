@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the counterparts of the paper's Figures 1 to 3 on this project's Cornell box.
-# usage: docs/figures.sh [FIGURE...]     all of 1 2 3 unless told; pictures go to docs/pictures/
+# Makes the counterparts of the paper's Figures 1 to 5, on this project's Cornell box and corridor.
+# usage: docs/figures.sh [FIGURE...]     all of 1 2 3 4 5 unless told; pictures go to docs/pictures/
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=docs/pictures
@@ -25,6 +25,29 @@ figure_3() { # one bounce of everything, two, and all
     crex render "${box[@]}" --crex '(<MRSGD>T*)*' --spp 32 -o "$out/figure3_all.png"
 }
 
-for figure in "${@:-1 2 3}"; do
+at=stimuli/corridor
+corridor=("$at/materials.rad" "$at/shell.rad" "$at/layout_a.rad" -vf "$at/corridor.vf" -x 640 -y 512)
+items='extinguisher.*,hose_reel.*,blanket.*,call_point.*,exit_sign.*,hydrant_sign.*,detector.*,sprinkler.*'
+
+figure_4() { # the corridor of the experiment: full solution, component-based quality, and where people see the difference
+    cargo stimuli --only a_hq --only a_cbq --only a_sel
+    for quality in hq cbq sel; do cp "$at/pictures/a_$quality.png" "$out/figure4_$quality.png"; done
+    crex compare "$at/pictures/a_hq.png" "$at/pictures/a_cbq.png" --display docs/display.toml --map "$at/maps/a.png" \
+        --difference "$out/figure4_cbq_differs.png"
+    crex compare "$at/pictures/a_hq.png" "$at/pictures/a_sel.png" --display docs/display.toml --map "$at/maps/a.png" \
+        --difference "$out/figure4_sel_differs.png"
+}
+
+figure_5() { # the task objects, the map with the fovea's gradient, what ran where for T{RSGM}, and the map over the picture
+    # A pixel a million degrees wide: nothing beyond the objects themselves matters.
+    crex importance "${corridor[@]}" --task "$items" --fovea 0 --px-per-deg .000001 --bits 8 -o "$out/figure5_task.png"
+    crex importance "${corridor[@]}" --task "$items" --bits 8 -o "$out/figure5_fovea.png" --overlay "$out/figure5_overlay.png"
+    crex importance "${corridor[@]}" --saliency --bits 8 -o "$out/figure5_saliency.png"
+    crex render "${corridor[@]}" --crex 'T{RSGM}' --importance "$out/figure5_fovea.png" \
+        --ran "$out/figure5_ran.png" -o "$out/figure5_picture.png"
+    rm "$out/figure5_picture.png"
+}
+
+for figure in "${@:-1 2 3 4 5}"; do
     for number in $figure; do "figure_$number"; done
 done

@@ -8,6 +8,7 @@ mod execution;
 mod first_hits;
 mod furnace;
 mod limited;
+mod modulated;
 mod recursive;
 
 use renderer::color::Rgb;

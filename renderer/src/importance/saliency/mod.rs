@@ -65,9 +65,10 @@ pub fn saliency(picture: &Raster<[f32; 3]>) -> Raster<f32> {
     let orientation = orientation.expect("there are four angles");
 
     let sum = added(added(normalised(intensity), &normalised(colour)), &normalised(orientation));
-    let full = expanded(&sum, MAP_SCALE as u32, width, height);
-    let largest = full.values().iter().copied().fold(0.0, f32::max);
-    if largest > 0.0 { mapped(&full, |value| value / largest) } else { full }
+    // Every value at scale 4 lies on a pixel, so the largest there is the largest of all.
+    let largest = sum.values().iter().copied().fold(0.0, f32::max);
+    let scaled = if largest > 0.0 { mapped(&sum, |value| value / largest) } else { sum };
+    expanded(&scaled, MAP_SCALE as u32, width, height)
 }
 
 /// Where the eye is predicted to go first: column and row of the largest saliency, the first in rows where several
@@ -97,24 +98,25 @@ impl Features {
         let (width, height) = (picture.width(), picture.height());
         let seen = |value: f32| if value.is_finite() { value } else { 0.0 };
         let plane = |values: Vec<f32>| Raster::from_values(width, height, values).expect("one value a pixel");
-        let intensity: Vec<f32> =
-            picture.values().iter().map(|&[r, g, b]| (seen(r) + seen(g) + seen(b)) / 3.0).collect();
-        let dark = DARK * intensity.iter().copied().fold(0.0, f32::max);
-        let mut red_green = Vec::with_capacity(intensity.len());
-        let mut blue_yellow = Vec::with_capacity(intensity.len());
-        for (&[r, g, b], &light) in picture.values().iter().zip(&intensity) {
-            if light <= dark || light <= 0.0 {
-                red_green.push(0.0);
-                blue_yellow.push(0.0);
-                continue;
-            }
-            let (r, g, b) = (seen(r) / light, seen(g) / light, seen(b) / light);
+        let pixels = picture.values();
+        let mut intensity = vec![0.0_f32; pixels.len()];
+        for (light, &[r, g, b]) in intensity.iter_mut().zip(pixels) {
+            *light = (seen(r) + seen(g) + seen(b)) / 3.0;
+        }
+        let dark = DARK * intensity.iter().copied().fold(0.0, |most, light| if light > most { light } else { most });
+        let mut red_green = vec![0.0_f32; pixels.len()];
+        let mut blue_yellow = vec![0.0_f32; pixels.len()];
+        let opponents = red_green.iter_mut().zip(&mut blue_yellow);
+        for ((&[r, g, b], &light), (red_green, blue_yellow)) in pixels.iter().zip(&intensity).zip(opponents) {
+            // Without branches: where hue is not seen, all three are 0 and so are their differences.
+            let unit = if light > dark { light } else { f32::INFINITY };
+            let (r, g, b) = (seen(r) / unit, seen(g) / unit, seen(b) / unit);
             let red = (r - (g + b) / 2.0).max(0.0);
             let green = (g - (r + b) / 2.0).max(0.0);
             let blue = (b - (r + g) / 2.0).max(0.0);
             let yellow = ((r + g) / 2.0 - (r - g).abs() / 2.0 - b).max(0.0);
-            red_green.push(red - green);
-            blue_yellow.push(blue - yellow);
+            *red_green = red - green;
+            *blue_yellow = blue - yellow;
         }
         // Filtering is linear: the pyramid of a difference is the difference of the pyramids.
         Self {
