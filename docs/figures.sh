@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 out=docs/pictures
 mkdir -p "$out"
-crex() { cargo run --quiet --release --package renderer --bin crex -- "$@"; }
+crex() { if [ -n "${CREX:-}" ]; then "$CREX" "$@"; else cargo run --quiet --release --package renderer --bin crex -- "$@"; fi; }
 box=(stimuli/cornell/cornell.rad -vf stimuli/cornell/cornell.vf -x 320 -y 320 -lr -8 -lw .1)
 
 figure_1() { # the components of one picture, each for itself, and the full solution
@@ -29,13 +29,21 @@ at=stimuli/corridor
 corridor=("$at/materials.rad" "$at/shell.rad" "$at/layout_a.rad" -vf "$at/corridor.vf" -x 640 -y 512)
 items='extinguisher.*,hose_reel.*,blanket.*,call_point.*,exit_sign.*,hydrant_sign.*,detector.*,sprinkler.*'
 
-figure_4() { # the corridor of the experiment: full solution, component-based quality, and where people see the difference
-    cargo stimuli --only a_hq --only a_cbq --only a_sel
-    for quality in hq cbq sel; do cp "$at/pictures/a_$quality.png" "$out/figure4_$quality.png"; done
-    crex compare "$at/pictures/a_hq.png" "$at/pictures/a_cbq.png" --display docs/display.toml --map "$at/maps/a.png" \
-        --difference "$out/figure4_cbq_differs.png"
-    crex compare "$at/pictures/a_hq.png" "$at/pictures/a_sel.png" --display docs/display.toml --map "$at/maps/a.png" \
-        --difference "$out/figure4_sel_differs.png"
+figure_4() { # the corridor of the experiment: full solution, component-based qualities, and where people see the difference
+    # Half the study's size and more; its own pictures are those of `cargo stimuli`.
+    local size=(-x 480 -y 384 --spp 8 --seed 1 -lr -12 -lw .2 -av .3213 .2833 .2225)
+    local map; map=$(mktemp --suffix .exr)
+    local display; display=$(mktemp --suffix .toml)
+    sed 's/1280/480/; s/1024/384/' docs/display.toml >"$display"
+    crex importance "${corridor[@]}" -x 480 -y 384 --task "$items" -o "$map"
+    crex render "${corridor[@]}" "${size[@]}" --crex '(TRSGMD)*' -ad 4 -o "$out/figure4_hq.png"
+    crex render "${corridor[@]}" "${size[@]}" --crex 'T{RSGM}' --importance "$map" -o "$out/figure4_cbq.png"
+    crex render "${corridor[@]}" "${size[@]}" --crex '(TRSGM{D})*' -ad 4 --importance "$map" --thresholds 1 -o "$out/figure4_sel.png"
+    for quality in cbq sel; do
+        crex compare "$out/figure4_hq.png" "$out/figure4_$quality.png" --display "$display" --map "$map" \
+            --difference "$out/figure4_${quality}_differs.png"
+    done
+    rm "$map" "$display"
 }
 
 figure_5() { # the task objects, the map with the fovea's gradient, what ran where for T{RSGM}, and the map over the picture

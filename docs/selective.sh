@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # Prints, for four scenes, what HQ, CBQ and SEL cost in one run and what people would see of the difference.
-# usage: docs/selective.sh [WIDTH [SPP]]     640 pixels across and 16 samples unless told
+# usage: [CREX=PROGRAM] docs/selective.sh [WIDTH [SPP]]     640 pixels across and 8 samples unless told; builds target/release/crex
+#        unless a program is given
 #
 # Times are CPU seconds (user + system) on one thread. A picture of any width fills the paper's display: 17 inches at
 # 60 cm. JOD by ColorVideoVDP and FLIP against HQ, over the picture and over the fovea about the task objects; the last
 # column is HQ against HQ of another seed: HQ's own noise, twice.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-width=${1:-640} spp=${2:-16}
-cargo build --quiet --release --package renderer --bin crex
-crex=target/release/crex
+width=${1:-640} spp=${2:-8}
+crex=${CREX:-target/release/crex}
+[ -n "${CREX:-}" ] || cargo build --quiet --release --package renderer --bin crex
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 TIMEFORMAT='%U %S'
@@ -35,14 +36,14 @@ row() {
                   scene, name, seconds, 100 * seconds / hq, mean, 10 - jod[0], flip[0], 10 - jod[1], flip[1] }'
 }
 
-# judge NAME TASK SEL-THRESHOLDS
+# judge NAME TASK-OBJECTS
 judge() {
     "$crex" importance "${scene[@]}" --task "$2" -o "$dir/map.png" 2>/dev/null
     local hq cbq sel again
-    hq=$(timed hq --crex '(TRSGMD)*' --seed 1)
+    hq=$(timed hq --crex '(TRSGMD)*' -ad 4 --seed 1)
     cbq=$(timed cbq --crex 'T{RSGM}' --importance "$dir/map.png" --seed 1)
-    sel=$(timed sel --crex '(TRSGM{D})*' --thresholds 1 --importance "$dir/map.png" --seed 1)
-    again=$(timed again --crex '(TRSGMD)*' --seed 2)
+    sel=$(timed sel --crex '(TRSGM{D})*' -ad 4 --thresholds 1 --importance "$dir/map.png" --seed 1)
+    again=$(timed again --crex '(TRSGMD)*' -ad 4 --seed 2)
     row "$1" hq "$hq" "$hq"
     row "$1" cbq "$cbq" "$hq"
     row "$1" sel "$sel" "$hq"
@@ -60,7 +61,7 @@ for layout in a b; do
     judge "corridor $layout" "$items"
 done
 # Fitted by the example fit_ambient, as the corridor's.
-scene=(stimuli/cornell/cornell.rad -vf stimuli/cornell/cornell.vf "${limits[@]}" -av CORNELL_AV)
+scene=(stimuli/cornell/cornell.rad -vf stimuli/cornell/cornell.vf "${limits[@]}" -av .2533 .2147 .1171)
 judge cornell ball,crystal_ball
-scene=(tests/data/scenes/room_a.rad -vf tests/data/scenes/room_a.vf "${limits[@]}" -av ROOM_AV)
+scene=(tests/data/scenes/room_a.rad -vf tests/data/scenes/room_a.vf "${limits[@]}" -av .3289 .2848 .1992)
 judge room_a s_plas,s_met,d_ball
