@@ -409,3 +409,92 @@ fn a_scene_in_pieces_is_the_scene() {
     let read = |name: &str| picture::read(Path::new(&folder.path(name))).unwrap().beauty;
     assert_eq!(read("a.png"), read("b.png"));
 }
+
+#[test]
+fn a_time_limit_gives_a_whole_picture_that_replays_to_the_bit() {
+    let folder = Folder::new();
+    for (seconds, spp) in [("0.01", "1"), ("0.6", "2")] {
+        let stats = folder.stats("(TRSMGD)*", &["--time", seconds, "--spp", spp, "--profile", "costs.json"]);
+        assert_eq!(stats["deadline_s"].as_f64().unwrap().to_string(), seconds);
+        let rounds: u64 =
+            stats["timed"]["rounds"].as_array().unwrap().iter().map(|r| r["samples"].as_u64().unwrap()).sum();
+        assert!(rounds > 0 || stats["timed"]["units"].as_u64().unwrap() > 0);
+        let first = fs::read(folder.path("a.exr")).unwrap();
+        fs::rename(folder.path("a.json"), folder.path("was.json")).unwrap();
+        let again = folder.stats("(TRSMGD)*", &["--replay", "was.json", "--spp", spp, "--threads", "1"]);
+        assert_eq!(first, fs::read(folder.path("a.exr")).unwrap(), "{seconds} s");
+        assert_eq!(stats["executed"], again["executed"]);
+    }
+    let names = folder.names();
+    assert!(names.contains(&"costs.json".to_owned()) && !names.iter().any(|name| name.ends_with(".part")), "{names:?}");
+    // The profile is of this scene, and so is what was recorded.
+    fs::write(folder.path("room.rad"), ROOM.replace(".7 .5", ".6 .5")).unwrap();
+    for (option, file, said_to_be) in
+        [("--profile", "costs.json", "measured for scene"), ("--replay", "was.json", "scene")]
+    {
+        let before = fs::read(folder.path(file)).unwrap();
+        let words =
+            [&["room.rad", "--crex", "(TRSMGD)*", "-x", "48", "-y", "33", "-o", "b.exr", option, file, "--spp", "2"]];
+        let time: &[&str] = if option == "--profile" { &["--time", "1"] } else { &[] };
+        let output = folder.render(&[words.concat().as_slice(), &VIEW[..], time].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        assert!(said(&output).contains(said_to_be), "{}", said(&output));
+        assert_eq!(before, fs::read(folder.path(file)).unwrap());
+    }
+    assert!(!folder.path("b.exr").exists());
+}
+
+#[test]
+fn frames_are_numbered_sharded_and_kept() {
+    let folder = Folder::new();
+    let view = |x: f64| format!("rvu -vtv -vp {x} -1.9 1.2 -vd 0 1 -.1 -vu 0 0 1 -vh 80 -vv 60\n");
+    fs::write(folder.path("path.vf"), format!("# a path\n{}{}{}", view(-0.2), view(0.0), view(0.2))).unwrap();
+    let frames = |more: &[&str]| {
+        let words = ["room.rad", "--crex", "D", "-x", "24", "-y", "16", "-o", "f.hdr", "--views", "path.vf"];
+        let output = folder.render(&[&words[..], more].concat());
+        assert!(output.status.success(), "{}", said(&output));
+    };
+    frames(&["--shard", "2/2"]);
+    assert_eq!(folder.names(), ["f_0002.hdr", "path.vf", "room.rad"]);
+    fs::write(folder.path("f_0002.hdr"), "kept").unwrap();
+    frames(&["--total-time", "0.3"]);
+    assert_eq!(folder.names(), ["f_0001.hdr", "f_0002.hdr", "f_0003.hdr", "path.vf", "room.rad"]);
+    assert_eq!(fs::read(folder.path("f_0002.hdr")).unwrap(), b"kept");
+    // The middle frame is the picture that its view makes alone.
+    fs::remove_file(folder.path("f_0002.hdr")).unwrap();
+    frames(&[]);
+    let words = ["room.rad", "--crex", "D", "-x", "24", "-y", "16", "-o", "alone.hdr"];
+    let output = folder.render(&[&words[..], &VIEW[..]].concat());
+    assert!(output.status.success(), "{}", said(&output));
+    let pixels = |name: &str| picture::read(&folder.path(name)).unwrap().beauty;
+    assert_eq!(pixels("f_0002.hdr"), pixels("alone.hdr"));
+    // A list without views is no list.
+    fs::write(folder.path("empty.vf"), "# nothing\n").unwrap();
+    let output = folder.render(&["room.rad", "--crex", "D", "-o", "g.hdr", "--views", "empty.vf"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+}
+
+#[test]
+fn an_estimate_counts_the_rays_that_the_rendering_traces() {
+    let folder = Folder::new();
+    let words =
+        ["room.rad", "--crex", "TRSMGD", "-x", "48", "-y", "33", "--spp", "4", "--json", "--profile", "costs.json"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crex"));
+    let output = command.arg("estimate").args(words).args(VIEW).current_dir(folder.0.path()).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let estimate: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let stats = folder.stats("TRSMGD", &["--spp", "4"]);
+    assert_eq!(estimate["primary"]["rays"].as_f64(), Some(48.0 * 33.0 * 4.0));
+    // Every primary hit but those of the lamp, the mirror and the pane spawns one D: the profile saw at least all pixels of a
+    // coarse lattice, thousands of hits.
+    let traced = |letter: &str| -> f64 {
+        let rows = stats["stages"].as_array().unwrap().iter().filter(|row| row["stage"] == letter);
+        rows.map(|row| row["rays"].as_f64().unwrap()).sum()
+    };
+    let (found, expected) = (estimate["components"]["D"]["rays"].as_f64().unwrap(), traced("D"));
+    assert!(found > 0.0 && expected > 0.0);
+    assert!(estimate["total_s"]["mean"].as_f64().unwrap() <= estimate["total_s"]["q95"].as_f64().unwrap());
+    for letter in ["D", "S", "G", "T", "R", "M"] {
+        assert!(estimate["components"][letter]["rays"].as_f64().is_some(), "{letter}");
+    }
+}

@@ -3,6 +3,8 @@
 
 mod compare;
 mod console;
+mod estimate;
+mod frames;
 mod importance;
 mod options;
 mod output;
@@ -36,6 +38,8 @@ struct Cli {
 enum Command {
     /// Render scenes to pictures
     Render(Box<render::Args>),
+    /// Predict what a crex will cost, from what rays have cost
+    Estimate(Box<estimate::Args>),
     /// Explain a crex stage by stage
     Plan(plan::Args),
     /// Make a map of where people look: task objects, what catches the eye, or both
@@ -47,7 +51,7 @@ enum Command {
 }
 
 /// The commands that take rpict's options.
-const RENDERING: [&str; 2] = ["render", "importance"];
+const RENDERING: [&str; 3] = ["render", "importance", "estimate"];
 
 fn main() -> ExitCode {
     let clock = MonotonicClock::start();
@@ -67,6 +71,7 @@ fn run(words: Vec<OsString>, clock: &MonotonicClock) -> Result<(), Failure> {
     let cli = Cli::from_arg_matches(&matches).map_err(Failure::Usage)?;
     match cli.command {
         Command::Render(args) => render::run(&args, &radiance, clock),
+        Command::Estimate(args) => estimate::run(&args, &radiance, clock),
         Command::Plan(args) => plan::run(&args),
         Command::Importance(args) => importance::run(&args, &radiance, clock).map(drop),
         Command::Compare(args) => compare::run(&args),

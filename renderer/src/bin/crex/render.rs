@@ -21,7 +21,7 @@ use crate::options::RadianceOptions;
 use crate::output::{self, Output};
 use crate::scene_files::{self, LoadedScene, SceneArgs};
 use crate::stats::Stats;
-use crate::{plan, snapshots, timed};
+use crate::{frames, plan, snapshots, timed};
 
 /// What `crex render` takes besides rpict's options.
 #[derive(clap::Args, Clone, Debug)]
@@ -32,8 +32,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     crex: String,
     /// The picture: .exr with a layer for each component, .hdr or .png; `-` is HDR on standard output. May be repeated
-    #[arg(short, long, value_name = "OUT", required = true)]
-    output: Vec<PathBuf>,
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Vec<PathBuf>,
     /// The view of that name in a .rif file [default: its first, where no view is given by -vf, -vp and so on]
     #[arg(long, value_name = "NAME")]
     view: Option<String>,
@@ -48,7 +48,7 @@ pub(crate) struct Args {
     threads: Option<u32>,
     /// Radiance times this is stored in .hdr, with an EXPOSURE line, and shown in .png; .exr always holds radiance
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    exposure: f64,
+    pub(crate) exposure: f64,
     /// The event of a path that says in which layer its light is filed
     #[arg(long, value_name = "WHICH", default_value = "last")]
     layers: LayerChoice,
@@ -81,10 +81,20 @@ pub(crate) struct Args {
     /// Have everything done so many seconds after the program's start: tasks that are not predicted to fit are skipped,
     /// and time that is left is spent on more samples
     #[arg(long, value_name = "SECONDS", value_parser = timed::seconds, conflicts_with = "snapshots")]
-    time: Option<f64>,
+    pub(crate) time: Option<f64>,
     /// What rays of this scene cost on this machine: read if it exists, and written with what was learnt
-    #[arg(long, value_name = "FILE", requires = "time")]
-    profile: Option<PathBuf>,
+    #[arg(long, value_name = "FILE")]
+    pub(crate) profile: Option<PathBuf>,
+    /// Render a picture for each view of a list, numbered from 0001 before the extension; frames that exist are kept, so that a run
+    /// that was stopped goes on where it was. --time is then for each frame
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["snapshots", "stats", "replay", "ran", "parts"])]
+    views: Option<PathBuf>,
+    /// With --views, have all frames done after so many seconds, instead of --time for each
+    #[arg(long, value_name = "SECONDS", value_parser = timed::seconds, requires = "views", conflicts_with = "time")]
+    pub(crate) total_time: Option<f64>,
+    /// With --views, render only frames I, I+N, I+2N ...
+    #[arg(long, value_name = "I/N", value_parser = frames::shard, requires = "views")]
+    pub(crate) shard: Option<frames::Shard>,
     /// Render again, without a clock and to the same bits, what a run under --time wrote with --stats
     #[arg(long, value_name = "STATS", conflicts_with_all = ["time", "snapshots"])]
     replay: Option<PathBuf>,
@@ -134,6 +144,9 @@ pub(crate) struct Prepared {
 }
 
 pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock) -> Result<(), Failure> {
+    if let Some(file) = &args.views {
+        return frames::run(args, prepare(args, options)?, file, clock);
+    }
     let outputs = outputs(args)?;
     let prepared = prepare(args, options)?;
     let request = &prepared.request;
@@ -182,13 +195,10 @@ fn run_timed(
     let request = &prepared.request;
     let beside =
         usize::from(args.stats.is_some()) + usize::from(args.ran.is_some()) + usize::from(args.parts.is_some());
-    let mut limit = timed::Limit::new(seconds, args.profile.as_deref(), beside, prepared, outputs)?;
+    let file = args.profile.as_deref();
+    let mut limit = timed::Limit::new(seconds, (file, timed::profile(file, prepared)?), beside, prepared, outputs);
     let timed = limit.render(prepared, clock)?;
-    for output in outputs {
-        let begun_s = clock.now_s();
-        output.write(&timed.rendering.film, args.exposure, &request.provenance, limit.compression())?;
-        limit.wrote(output, prepared, clock.now_s() - begun_s);
-    }
+    limit.write(args.exposure, prepared, outputs, &timed.rendering, clock)?;
     write_beside(args, prepared, outputs, &timed.rendering)?;
     limit.save()?;
     let stats = Stats::new(&request.program, &request.settings, &timed.rendering, timed::threads(&request.settings));
@@ -324,6 +334,9 @@ impl Prepared {
 fn outputs(args: &Args) -> Result<Vec<Output>, Failure> {
     if !(args.exposure.is_finite() && args.exposure > 0.0) {
         return Err(Failure::input(format!("--exposure {} must be a positive number", args.exposure)));
+    }
+    if args.output.is_empty() {
+        return Err(Failure::input("no place for the picture: name it with -o, such as -o picture.exr"));
     }
     let outputs = args.output.iter().map(|path| Output::new(path)).collect::<Result<Vec<_>, _>>()?;
     if outputs.iter().filter(|output| output.path().is_none()).count() > 1 {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use renderer::component::Component;
 use renderer::picture::{Compression, Format, Input};
-use renderer::render::{RoundRecord, Settings, TimedRecord, TimedRendering};
+use renderer::render::{Rendering, RoundRecord, Settings, TimedRecord, TimedRendering};
 use renderer::schedule::{Budget, Clock, MonotonicClock, ProfileCache};
 use serde::{Deserialize, Serialize};
 use stimuli::Sha256;
@@ -39,6 +39,8 @@ const SMALL_FILE_S: f64 = 0.004;
 /// A time limit and what is known of costs.
 pub(crate) struct Limit<'a> {
     seconds: f64,
+    /// From when they count, by the program's clock.
+    begun_s: f64,
     file: Option<&'a Path>,
     profile: ProfileCache,
     compression: Compression,
@@ -84,15 +86,14 @@ pub(crate) fn profile(file: Option<&Path>, prepared: &Prepared) -> Result<Profil
 }
 
 impl<'a> Limit<'a> {
-    /// Reads the profile and decides how pictures will be packed.
+    /// Decides how pictures will be packed.
     pub(crate) fn new(
         seconds: f64,
-        file: Option<&'a Path>,
+        (file, profile): (Option<&'a Path>, ProfileCache),
         small_files: usize,
         prepared: &Prepared,
         outputs: &[Output],
-    ) -> Result<Self, Failure> {
-        let profile = profile(file, prepared)?;
+    ) -> Self {
         let sizes: Vec<(Option<Format>, f64)> = outputs.iter().map(|output| bytes(output, prepared)).collect();
         let mut chosen = (Compression::Uncompressed, f64::INFINITY);
         for (compression, name, guess) in WRITING_S {
@@ -110,12 +111,12 @@ impl<'a> Limit<'a> {
         }
         let small = small_files + usize::from(file.is_some());
         let reserve_s = chosen.1 + EDGES_S + small as f64 * SMALL_FILE_S;
-        Ok(Self { seconds, file, profile, compression: chosen.0, reserve_s })
+        Self { seconds, begun_s: 0.0, file, profile, compression: chosen.0, reserve_s }
     }
 
     /// Renders.
     pub(crate) fn render(&mut self, prepared: &Prepared, clock: &MonotonicClock) -> Result<TimedRendering, Failure> {
-        let budget = Budget::new(clock, self.seconds, self.reserve_s);
+        let budget = Budget::new(clock, self.begun_s + self.seconds, self.reserve_s);
         if budget.left_s() <= 0.0 {
             let message = format!(
                 "--time {}: reading the scene took {:.2} s and writing may take {:.2} s more: a picture of the coarsest \
@@ -132,16 +133,33 @@ impl<'a> Limit<'a> {
         })
     }
 
-    /// How EXR files are to be packed.
-    pub(crate) fn compression(&self) -> Compression {
-        self.compression
+    /// Writes the pictures, and learns what that takes.
+    pub(crate) fn write(
+        &mut self,
+        exposure: f64,
+        prepared: &Prepared,
+        outputs: &[Output],
+        rendering: &Rendering,
+        clock: &MonotonicClock,
+    ) -> Result<(), Failure> {
+        for output in outputs {
+            let begun_s = clock.now_s();
+            output.write(&rendering.film, exposure, &prepared.request.provenance, self.compression)?;
+            let (format, bytes) = bytes(output, prepared);
+            let name = writer_name(format, compression_name(self.compression));
+            self.profile.observe_writer(name, bytes as u64, clock.now_s() - begun_s);
+        }
+        Ok(())
     }
 
-    /// Takes in what writing a picture took.
-    pub(crate) fn wrote(&mut self, output: &Output, prepared: &Prepared, seconds: f64) {
-        let (format, bytes) = bytes(output, prepared);
-        let name = writer_name(format, compression_name(self.compression));
-        self.profile.observe_writer(name, bytes as u64, seconds);
+    /// The same with the time counted from a moment of the program's clock.
+    pub(crate) fn beginning_at(self, begun_s: f64) -> Self {
+        Self { begun_s, ..self }
+    }
+
+    /// The profile, for the next picture.
+    pub(crate) fn into_profile(self) -> ProfileCache {
+        self.profile
     }
 
     /// Stores what was learnt, if there is a file for it.
