@@ -72,14 +72,18 @@ impl Refinement {
         left_s: &(dyn Fn() -> f64 + Sync),
         profile: &mut ProfileCache,
     ) -> Result<bool, ThresholdError> {
-        while self.units < units {
+        let mut by_thread = vec![Outcome::default(); rayon::current_num_threads()];
+        let mut in_time = true;
+        while in_time && self.units < units {
             let index = self.levels();
             let end = ((index + 1) * self.tiles.len() as u64).min(units);
-            if !self.run_level(renderer, tracer, Level::new(index), end, left_s, profile)? {
-                return Ok(false);
-            }
+            in_time = self.run_level(renderer, tracer, Level::new(index), end, left_s, &mut by_thread)?;
         }
-        Ok(true)
+        // One observation for each thread: those of single levels would tell more about the system's interruptions.
+        for outcome in &by_thread {
+            learn(profile, outcome, by_thread.len() as f64);
+        }
+        Ok(in_time)
     }
 
     /// As [`Self::run`], within a level, which ends before unit `end`.
@@ -90,7 +94,7 @@ impl Refinement {
         level: Level,
         end: u64,
         left_s: &(dyn Fn() -> f64 + Sync),
-        profile: &mut ProfileCache,
+        by_thread: &mut [Outcome],
     ) -> Result<bool, ThresholdError> {
         let first = self.units;
         let guard_s = if self.spent.1 > 0.0 { GUARD * self.spent.0 / self.spent.1 * level.share() } else { 0.0 };
@@ -131,10 +135,9 @@ impl Refinement {
             Ok(outcome)
         });
         self.units = next.into_inner().min(end);
-        let threads = done.len() as f64;
-        for outcome in done {
+        for (outcome, sum) in done.into_iter().zip(by_thread) {
             let outcome = outcome?;
-            learn(profile, &outcome, threads);
+            sum.add(outcome.clone());
             self.spent.0 += outcome.primary.seconds + outcome.rows.iter().map(|row| row.report.seconds).sum::<f64>();
             self.outcome.add(outcome);
         }
