@@ -434,9 +434,9 @@ fn a_time_limit_gives_a_whole_picture_that_replays_to_the_bit() {
     {
         let before = fs::read(folder.path(file)).unwrap();
         let words =
-            [&["room.rad", "--crex", "(TRSMGD)*", "-x", "48", "-y", "33", "-o", "b.exr", option, file, "--spp", "2"]];
+            ["room.rad", "--crex", "(TRSMGD)*", "-x", "48", "-y", "33", "-o", "b.exr", option, file, "--spp", "2"];
         let time: &[&str] = if option == "--profile" { &["--time", "1"] } else { &[] };
-        let output = folder.render(&[words.concat().as_slice(), &VIEW[..], time].concat());
+        let output = folder.render(&[&words[..], &VIEW[..], time].concat());
         assert_eq!(output.status.code(), Some(2), "{}", said(&output));
         assert!(said(&output).contains(said_to_be), "{}", said(&output));
         assert_eq!(before, fs::read(folder.path(file)).unwrap());
