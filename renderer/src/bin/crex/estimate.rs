@@ -16,6 +16,7 @@ const LEARNING_S: f64 = 0.5;
 
 /// What `crex estimate` takes besides rpict's options.
 #[derive(clap::Args, Clone, Debug)]
+#[group(skip)]
 pub(crate) struct Args {
     #[command(flatten)]
     render: render::Args,

@@ -29,7 +29,7 @@ pub(crate) fn shard(text: &str) -> Result<Shard, String> {
 }
 
 /// The views of a list, one a line that holds `VIEW=` or begins with `rvu`; the rest of the file is skipped.
-fn views(file: &Path) -> Result<Vec<ViewSpec>, Failure> {
+pub(crate) fn views(file: &Path) -> Result<Vec<ViewSpec>, Failure> {
     let name = file.display().to_string();
     let text = std::fs::read_to_string(file).map_err(|error| Failure::input(format!("--views {name}: {error}")))?;
     let mut views = Vec::new();
@@ -58,11 +58,16 @@ fn numbered(path: &Path, frame: usize) -> PathBuf {
 }
 
 /// Renders the frames that are not there yet.
-pub(crate) fn run(args: &Args, mut prepared: Prepared, file: &Path, clock: &MonotonicClock) -> Result<(), Failure> {
+pub(crate) fn run(
+    args: &Args,
+    mut prepared: Prepared,
+    views: &[ViewSpec],
+    file: &Path,
+    clock: &MonotonicClock,
+) -> Result<(), Failure> {
     if args.output.is_empty() || args.output.iter().any(|path| path == Path::new("-")) {
         return Err(Failure::input("--views makes many pictures: name a file with -o, not standard output"));
     }
-    let views = views(file)?;
     let Shard { number, all } = args.shard.unwrap_or(Shard { number: 1, all: 1 });
     let names = |frame: usize| args.output.iter().map(|path| numbered(path, frame)).collect::<Vec<_>>();
     let mine = (0..views.len()).filter(|frame| frame % all == number - 1);

@@ -145,7 +145,10 @@ pub(crate) struct Prepared {
 
 pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock) -> Result<(), Failure> {
     if let Some(file) = &args.views {
-        return frames::run(args, prepare(args, options)?, file, clock);
+        let views = frames::views(file)?;
+        // All frames have the size that the first view makes.
+        let options = RadianceOptions { view: views[0], view_given: true, ..options.clone() };
+        return frames::run(args, prepare(args, &options)?, &views, file, clock);
     }
     let outputs = outputs(args)?;
     let prepared = prepare(args, options)?;
