@@ -470,7 +470,6 @@ fn frames_are_numbered_sharded_and_kept() {
     assert!(output.status.success(), "{}", said(&output));
     let pixels = |name: &str| picture::read(&folder.path(name)).unwrap().beauty;
     assert_eq!(pixels("f_0002.hdr"), pixels("alone.hdr"));
-    // A list without views is no list.
     fs::write(folder.path("empty.vf"), "# nothing\n").unwrap();
     let output = folder.render(&["room.rad", "--crex", "D", "-o", "g.hdr", "--views", "empty.vf"]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
@@ -487,8 +486,6 @@ fn an_estimate_counts_the_rays_that_the_rendering_traces() {
     let estimate: Value = serde_json::from_slice(&output.stdout).unwrap();
     let stats = folder.stats("TRSMGD", &["--spp", "4"]);
     assert_eq!(estimate["primary"]["rays"].as_f64(), Some(48.0 * 33.0 * 4.0));
-    // Every primary hit but those of the lamp, the mirror and the pane spawns one D: the profile saw at least all pixels of a
-    // coarse lattice, thousands of hits.
     let traced = |letter: &str| -> f64 {
         let rows = stats["stages"].as_array().unwrap().iter().filter(|row| row["stage"] == letter);
         rows.map(|row| row["rays"].as_f64().unwrap()).sum()
