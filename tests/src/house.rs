@@ -44,6 +44,8 @@ const RENDERER_ARROWS: &[(&str, &[&str])] = &[
     ("importance", &["raster", "film", "features", "color", "component", "math"]),
     ("schedule", &["component", "crex", "work", "importance"]),
     ("picture", &["raster", "color", "component"]),
+    ("trade", &[]),
+    ("propose", &["component", "color", "crex", "geometry", "picture", "raster", "render", "scene", "schedule"]),
 ];
 
 /// A word of code and the only places (path prefixes below the project's root) that may say it.

@@ -96,6 +96,29 @@ impl Display {
         0.01
     }
 
+    /// The screen of the 2005 experiment, a typical one of then: 17 inches, 1280 x 1024, 60 cm away, in a dim office (white
+    /// 250 cd/m2, contrast 500, 50 lux of which 1 % is reflected).
+    #[must_use]
+    pub fn of_the_paper() -> Self {
+        Self {
+            peak_cd_m2: 250.0,
+            black_cd_m2: 0.5,
+            ambient_lux: 50.0,
+            reflectivity: 0.01,
+            width_px: 1280,
+            height_px: 1024,
+            width_m: 0.3372,
+            distance_m: 0.6,
+            transfer: Transfer::Srgb,
+        }
+    }
+
+    /// The same screen with pixels `factor` times as large, for pictures that have so many times fewer.
+    #[must_use]
+    pub fn with_larger_pixels(&self, factor: f64) -> Self {
+        Self { width_m: self.width_m * factor, ..self.clone() }
+    }
+
     /// Reads a display file.
     ///
     /// # Errors

@@ -23,6 +23,8 @@ mod write;
 
 use std::path::Path;
 
+use glam::Vec3;
+
 use crate::color::srgb_encode;
 use crate::raster::Raster;
 
@@ -66,6 +68,14 @@ pub struct Layer {
 }
 
 impl Picture {
+    /// A picture of radiance without layers, as the metrics take it.
+    #[must_use]
+    pub fn of_radiance(beauty: &Raster<Vec3>) -> Self {
+        let pixels = beauty.values().iter().map(Vec3::to_array).collect();
+        let beauty = Raster::from_values(beauty.width(), beauty.height(), pixels).expect("as many pixels");
+        Self { quantity: Quantity::Radiance, beauty, layers: Vec::new(), provenance: Provenance::default() }
+    }
+
     /// The layer of that name.
     #[must_use]
     pub fn layer(&self, name: &str) -> Option<&Raster<Pixel>> {

@@ -71,12 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if !(args.exposure.is_finite() && args.exposure > 0.0) {
         return Err(Failure::input(format!("--exposure {} must be a positive number", args.exposure)));
     }
-    let display = args.display.as_deref().map(Display::read).transpose().map_err(|error| match error {
-        DisplayError::Read { ref error, .. } if error.kind() != std::io::ErrorKind::NotFound => {
-            Failure::Cannot(error.to_string())
-        }
-        other => Failure::input(other),
-    })?;
+    let display = args.display.as_deref().map(read_display).transpose()?;
     let (reference, picture) = (picture::read(&args.reference)?, picture::read(&args.picture)?);
     let difference = compare::difference(&reference, &picture).map_err(Failure::input)?;
     let (mut flip, mut jod, mut region) = (None, None, None);
@@ -134,6 +129,16 @@ fn write_difference(path: &Path, map: &Raster<f32>) -> Result<(), Failure> {
     let provenance = Provenance { software: format!("crex {}", env!("CARGO_PKG_VERSION")), ..Provenance::default() };
     let picture = Picture { quantity: Quantity::Display, beauty, layers: Vec::new(), provenance };
     Ok(picture::write(path, &picture, Compression::Zip)?)
+}
+
+/// Reads a display file.
+pub(crate) fn read_display(path: &Path) -> Result<Display, Failure> {
+    Display::read(path).map_err(|error| match error {
+        DisplayError::Read { ref error, .. } if error.kind() != std::io::ErrorKind::NotFound => {
+            Failure::Cannot(error.to_string())
+        }
+        other => Failure::input(other),
+    })
 }
 
 /// The report for people.

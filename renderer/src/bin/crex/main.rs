@@ -1,6 +1,7 @@
 //! `crex`: Radiance scenes rendered by light-transport component, and what belongs to that. Words become a request, the library
 //! runs it, the outcome becomes an exit code: 0 done, 1 could not, 2 the input is wrong.
 
+mod auto;
 mod compare;
 mod console;
 mod estimate;
@@ -16,6 +17,7 @@ mod spellings;
 mod stats;
 mod stimuli;
 mod timed;
+mod trade;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -44,6 +46,10 @@ enum Command {
     Plan(plan::Args),
     /// Make a map of where people look: task objects, what catches the eye, or both
     Importance(Box<importance::Args>),
+    /// Propose a crex: what a scene's picture needs, in which order and how often
+    Auto(Box<auto::Args>),
+    /// Measure what quality costs: loss against time over crexes, samples and importance
+    Trade(Box<trade::Args>),
     /// Measure how far a picture lies from a reference
     Compare(compare::Args),
     /// Render the pictures of a study that are missing or stale, or check them
@@ -51,7 +57,7 @@ enum Command {
 }
 
 /// The commands that take rpict's options.
-const RENDERING: [&str; 3] = ["render", "importance", "estimate"];
+const RENDERING: [&str; 5] = ["render", "importance", "estimate", "auto", "trade"];
 
 fn main() -> ExitCode {
     let clock = MonotonicClock::start();
@@ -72,6 +78,8 @@ fn run(words: Vec<OsString>, clock: &MonotonicClock) -> Result<(), Failure> {
     match cli.command {
         Command::Render(args) => render::run(&args, &radiance, clock),
         Command::Estimate(args) => estimate::run(&args, &radiance, clock),
+        Command::Auto(args) => auto::run(&args, &radiance),
+        Command::Trade(args) => trade::run(&args, &radiance, clock),
         Command::Plan(args) => plan::run(&args),
         Command::Importance(args) => importance::run(&args, &radiance, clock).map(drop),
         Command::Compare(args) => compare::run(&args),

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::{Args as _, FromArgMatches as _};
 use renderer::component::{Component, ComponentSet};
 use renderer::crex::{self, Program, Setting};
 use renderer::film::Layers;
@@ -264,7 +265,35 @@ fn rif_view(
     Ok(Some(options))
 }
 
+/// The same for commands that choose crex and samples themselves: everything but those as `crex render` takes it.
+pub(crate) fn prepare_scene(
+    scene: &SceneArgs,
+    threads: Option<u32>,
+    seed: u64,
+    importance: Option<&Path>,
+    options: &RadianceOptions,
+) -> Result<Prepared, Failure> {
+    let mut words: Vec<std::ffi::OsString> =
+        ["render", "scene", "--crex", "", "-o", "-", "--seed"].map(Into::into).into();
+    words.push(seed.to_string().into());
+    if let Some(threads) = threads {
+        words.extend(["--threads".into(), threads.to_string().into()]);
+    }
+    if let Some(map) = importance {
+        words.extend(["--importance".into(), map.into()]);
+    }
+    let command = Args::augment_args(clap::Command::new("render"));
+    let matches = command.try_get_matches_from(words).map_err(Failure::Usage)?;
+    let args = Args { scene: scene.clone(), ..Args::from_arg_matches(&matches).map_err(Failure::Usage)? };
+    prepare(&args, options)
+}
+
 impl Prepared {
+    /// The scene.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
     /// Renders, with a bar on standard error; `show` gets the picture after every stage.
     pub(crate) fn render(&self, clock: &MonotonicClock, show: Option<Show<'_>>) -> Result<Rendering, Failure> {
         let progress = Progress::new(clock);

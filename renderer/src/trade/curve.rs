@@ -1,0 +1,220 @@
+//! Points of quality and time, and what they say.
+
+use serde::Serialize;
+
+/// How a rendering heeded the importance map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Modulated {
+    /// It had none.
+    No,
+    /// Members of `{ }` ran where the map reaches their thresholds.
+    Thresholds,
+    /// They ran for as many samples as the map says.
+    Continuous,
+}
+
+impl Modulated {
+    /// The word in files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::No => "no",
+            Self::Thresholds => "thresholds",
+            Self::Continuous => "continuous",
+        }
+    }
+}
+
+/// A rendering: what it cost and how far it lies from the reference.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// What ran.
+    pub crex: String,
+    /// How it heeded the map.
+    pub importance: Modulated,
+    /// Samples of each pixel.
+    pub spp: u32,
+    /// Seconds from start to end of the rendering; loading and writing are not in it.
+    pub wall_s: f64,
+    /// Processor seconds of the whole program in that time: what stays comparable on a busy machine.
+    pub cpu_s: f64,
+    /// Rays traced, primary ones included, shadow rays not.
+    pub rays: u64,
+    /// Loss in JOD: 10 less what ColorVideoVDP gives.
+    pub loss_jod: f64,
+    /// Mean FLIP.
+    pub flip: f64,
+    /// Relative mean squared error of luminance.
+    pub rel_mse: f64,
+    /// Whether no other point is both quicker and better (processor seconds, JOD).
+    pub front: bool,
+    /// Whether it is the knee of the front.
+    pub knee: bool,
+}
+
+/// All renderings of a scene, the quickest first.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Curve {
+    points: Vec<Point>,
+}
+
+/// What half the time costs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Half {
+    /// The best rendering.
+    pub best: Point,
+    /// The best one of those that take at most half its time.
+    pub half: Point,
+}
+
+impl Curve {
+    /// Finds the front and the knee. Points whose numbers are not finite do not compete.
+    ///
+    /// The knee is the point of the front farthest below the chord between its ends, time on a logarithmic axis and loss on a
+    /// linear one, each scaled to the front's extent (V. Satopaa and others, "Finding a 'Kneedle' in a Haystack", ICDCSW
+    /// 2011, without its smoothing). A front of fewer than three points, or one that nowhere lies below its chord, has none.
+    #[must_use]
+    pub fn new(mut points: Vec<Point>) -> Self {
+        points.sort_by(|a, b| {
+            (a.cpu_s, a.loss_jod).partial_cmp(&(b.cpu_s, b.loss_jod)).unwrap_or(std::cmp::Ordering::Equal)
+        });
+        let mut least = f64::INFINITY;
+        for point in &mut points {
+            (point.front, point.knee) = (point.cpu_s.is_finite() && point.loss_jod < least, false);
+            if point.front {
+                least = point.loss_jod;
+            }
+        }
+        let mut curve = Self { points };
+        if let Some(knee) = curve.find_knee() {
+            curve.points[knee].knee = true;
+        }
+        curve
+    }
+
+    fn find_knee(&self) -> Option<usize> {
+        let front: Vec<(usize, f64, f64)> = (0..)
+            .zip(&self.points)
+            .filter(|(_, point)| point.front && point.cpu_s > 0.0)
+            .map(|(index, point)| (index, point.cpu_s.ln(), point.loss_jod))
+            .collect();
+        let (&(_, start, high), &(_, end, low)) = (front.first()?, front.last()?);
+        if front.len() < 3 || end <= start || high <= low {
+            return None;
+        }
+        // Below the chord from (0, 1) to (1, 0): x + y < 1.
+        let below =
+            |&(_, time, loss): &(usize, f64, f64)| 1.0 - (time - start) / (end - start) - (loss - low) / (high - low);
+        let knee = front.iter().max_by(|a, b| below(a).total_cmp(&below(b)))?;
+        (below(knee) > 1e-9).then_some(knee.0)
+    }
+
+    /// The points, the quickest first.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// Those of the front.
+    pub fn front(&self) -> impl DoubleEndedIterator<Item = &Point> {
+        self.points.iter().filter(|point| point.front)
+    }
+
+    /// The knee of the front.
+    #[must_use]
+    pub fn knee(&self) -> Option<&Point> {
+        self.points.iter().find(|point| point.knee)
+    }
+
+    /// What is lost at half the time of the best rendering; `None` if no rendering took so little.
+    #[must_use]
+    pub fn half(&self) -> Option<Half> {
+        let best = self.front().next_back()?;
+        let half = self.front().rfind(|point| point.cpu_s <= 0.5 * best.cpu_s)?;
+        Some(Half { best: best.clone(), half: half.clone() })
+    }
+
+    /// A table with a head, one line a point.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut text = "crex,importance,spp,wall_s,cpu_s,rays,loss_jod,flip,rel_mse,front,knee\n".to_owned();
+        for point in &self.points {
+            let Point { crex, importance, spp, wall_s, cpu_s, rays, loss_jod, flip, rel_mse, front, knee } = point;
+            text.push_str(&format!(
+                "{crex},{},{spp},{wall_s:.4},{cpu_s:.4},{rays},{loss_jod:.5},{flip:.6},{rel_mse:.6},{front},{knee}\n",
+                importance.word()
+            ));
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn point(cpu_s: f64, loss_jod: f64) -> Point {
+        Point {
+            crex: "D".to_owned(),
+            importance: Modulated::No,
+            spp: 1,
+            wall_s: cpu_s,
+            cpu_s,
+            rays: 1,
+            loss_jod,
+            flip: 0.0,
+            rel_mse: 0.0,
+            front: false,
+            knee: false,
+        }
+    }
+
+    fn front(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        let curve = Curve::new(points.iter().map(|&(time, loss)| point(time, loss)).collect());
+        curve.front().map(|point| (point.cpu_s, point.loss_jod)).collect()
+    }
+
+    #[test]
+    fn the_front_is_what_nothing_beats() {
+        let points = [(4.0, 0.5), (1.0, 3.0), (2.0, 3.0), (2.0, 1.0), (8.0, 0.6), (16.0, 0.0)];
+        assert_eq!(front(&points), [(1.0, 3.0), (2.0, 1.0), (4.0, 0.5), (16.0, 0.0)]);
+    }
+
+    #[test]
+    fn the_knee_is_farthest_below_the_chord_in_log_time() {
+        // In log2 time 0, 1, 2, 4 of 4 and loss 1, 1/3, 1/6, 0 of 3: below the chord by 0, 5/12, 1/3, 0.
+        let curve = Curve::new([(1.0, 3.0), (2.0, 1.0), (4.0, 0.5), (16.0, 0.0)].map(|(t, l)| point(t, l)).to_vec());
+        assert_eq!(curve.knee().map(|point| point.cpu_s), Some(2.0));
+        // What halves with each doubling is straight and has no knee; nor have two points.
+        let straight = Curve::new([(1.0, 2.0), (2.0, 1.0), (4.0, 0.0)].map(|(t, l)| point(t, l)).to_vec());
+        assert_eq!(straight.knee(), None);
+        assert_eq!(Curve::new(vec![point(1.0, 2.0), point(2.0, 1.0)]).knee(), None);
+        assert_eq!(Curve::new(vec![]).knee(), None);
+    }
+
+    #[test]
+    fn half_the_time_is_the_best_that_fits() {
+        let curve = Curve::new([(1.0, 3.0), (3.0, 1.0), (5.0, 0.5), (8.0, 0.0)].map(|(t, l)| point(t, l)).to_vec());
+        let Half { best, half } = curve.half().unwrap();
+        assert_eq!((best.cpu_s, half.cpu_s), (8.0, 3.0));
+        assert_eq!(Curve::new(vec![point(4.0, 1.0), point(5.0, 0.5)]).half(), None);
+    }
+
+    proptest! {
+        /// By the definition, whatever the points.
+        #[test]
+        fn a_point_is_on_the_front_just_if_no_other_dominates_it(
+            points in prop::collection::vec((1_u8..20, 0_u8..20), 1..30),
+        ) {
+            let points: Vec<(f64, f64)> = points.into_iter().map(|(t, l)| (f64::from(t), f64::from(l))).collect();
+            let found = front(&points);
+            for &(time, loss) in &points {
+                let beaten = points.iter().any(|&(t, l)| t <= time && l <= loss && (t, l) != (time, loss));
+                prop_assert_eq!(found.contains(&(time, loss)), !beaten);
+            }
+            prop_assert!(found.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1));
+        }
+    }
+}

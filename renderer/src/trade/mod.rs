@@ -1,0 +1,7 @@
+//! The trade of quality for time: the curve of what was measured, its front, its knee, and its picture.
+
+mod curve;
+mod svg;
+
+pub use curve::{Curve, Half, Modulated, Point};
+pub use svg::svg;

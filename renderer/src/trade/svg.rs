@@ -1,0 +1,216 @@
+//! The curve as a picture.
+
+use std::fmt::Write as _;
+
+use super::curve::{Curve, Modulated, Point};
+
+/// The plot's place in the picture, and the picture's width: left, top, right, bottom, all.
+const PLOT: [f64; 4] = [70.0, 60.0, 640.0, 440.0];
+const WIDTH: f64 = 1060.0;
+
+/// Height of a line of the list.
+const LINE: f64 = 18.0;
+
+/// Colours for light and for dark surroundings; data colours are of Okabe and Ito's palette for colour-blind eyes ("Color
+/// Universal Design", 2008), and shapes differ too.
+const STYLE: &str = "\
+svg{color:#222;background:#fff;font:13px system-ui,sans-serif}text{fill:currentColor}\
+.axis{stroke:currentColor;fill:none}.grid{stroke:currentColor;opacity:.15}\
+.no{fill:#0072b2}.thresholds{fill:#d55e00}.continuous{fill:#009e73}.off{opacity:.35}\
+.front{stroke:currentColor;fill:none;stroke-width:1.5}.knee{stroke:#cc79a7;fill:none;stroke-width:3}\
+@media(prefers-color-scheme:dark){svg{color:#ddd;background:#16181c}.no{fill:#56b4e9}.thresholds{fill:#e69f00}\
+.continuous{fill:#4fd1a5}}";
+
+/// Places of numbers in the plot.
+struct Scale {
+    time: [f64; 2],
+    most: f64,
+}
+
+impl Scale {
+    fn of(points: &[&Point]) -> Self {
+        let times = points.iter().map(|point| point.cpu_s);
+        let (low, high) = times.fold((f64::INFINITY, 0.0_f64), |(low, high), time| (low.min(time), high.max(time)));
+        let margin = (high / low).ln().max(0.1) * 0.04;
+        let most = points.iter().map(|point| point.loss_jod).fold(0.01_f64, f64::max) * 1.05;
+        Self { time: [low.ln() - margin, high.ln() + margin], most }
+    }
+
+    fn x(&self, cpu_s: f64) -> f64 {
+        PLOT[0] + (PLOT[2] - PLOT[0]) * (cpu_s.ln() - self.time[0]) / (self.time[1] - self.time[0])
+    }
+
+    fn y(&self, loss_jod: f64) -> f64 {
+        PLOT[3] - (PLOT[3] - PLOT[1]) * loss_jod / self.most
+    }
+}
+
+/// Loss in JOD against processor seconds on a logarithmic axis, the front as a line with its points numbered and listed, the
+/// knee ringed. Reads in light and in dark surroundings.
+#[must_use]
+pub fn svg(curve: &Curve, title: &str) -> String {
+    let shown = |point: &&Point| point.cpu_s > 0.0 && point.cpu_s.is_finite() && point.loss_jod.is_finite();
+    let points: Vec<&Point> = curve.points().iter().filter(shown).collect();
+    let front: Vec<&Point> = curve.front().filter(shown).collect();
+    let height = (PLOT[3] + 60.0).max(PLOT[1] + LINE * (front.len() as f64 + 6.0));
+    let mut text = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
+         role=\"img\"><title>{0}</title><style>{STYLE}</style><rect width=\"100%\" height=\"100%\" fill=\"none\"/>\
+         <text x=\"{1}\" y=\"28\" font-size=\"16\">{0}</text>",
+        escaped(title),
+        PLOT[0]
+    );
+    if points.is_empty() {
+        text.push_str("</svg>\n");
+        return text;
+    }
+    let scale = Scale::of(&points);
+    axes(&mut text, &scale);
+    let path: Vec<String> =
+        front.iter().map(|p| format!("{:.1},{:.1}", scale.x(p.cpu_s), scale.y(p.loss_jod))).collect();
+    put(&mut text, format_args!("<polyline class=\"front\" points=\"{}\"/>", path.join(" ")));
+    points.iter().for_each(|point| mark(&mut text, &scale, point));
+    list(&mut text, &scale, &front);
+    text.push_str("</svg>\n");
+    text
+}
+
+fn axes(text: &mut String, scale: &Scale) {
+    let [left, top, right, bottom] = PLOT;
+    for time in decades(scale.time) {
+        let x = scale.x(time);
+        put(text, format_args!("<path class=\"grid\" d=\"M{x:.1} {top}V{bottom}\"/>"));
+        put(text, format_args!("<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{time}</text>", bottom + 18.0));
+    }
+    let step = nice_step(scale.most / 6.0);
+    let ticks = (scale.most / step).floor() as u32;
+    for loss in (0..=ticks).map(|tick| f64::from(tick) * step) {
+        let y = scale.y(loss);
+        let digits = if step < 0.1 { 2 } else { usize::from(step < 1.0) };
+        put(text, format_args!("<path class=\"grid\" d=\"M{left} {y:.1}H{right}\"/>"));
+        put(
+            text,
+            format_args!("<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{loss:.digits$}</text>", left - 8.0, y + 4.0),
+        );
+    }
+    put(text, format_args!("<path class=\"axis\" d=\"M{left} {top}V{bottom}H{right}\"/>"));
+    let (middle, below) = (f64::midpoint(left, right), bottom + 42.0);
+    put(text, format_args!("<text x=\"{middle}\" y=\"{below}\" text-anchor=\"middle\">processor seconds</text>"));
+    let middle = f64::midpoint(top, bottom);
+    put(
+        text,
+        format_args!(
+            "<text x=\"22\" y=\"{middle}\" text-anchor=\"middle\" transform=\"rotate(-90 22 {middle})\">predicted loss, JOD</text>"
+        ),
+    );
+}
+
+/// 1, 2 and 5 times powers of ten within a range of logarithms.
+fn decades([low, high]: [f64; 2]) -> Vec<f64> {
+    let (first, last) =
+        ((low / std::f64::consts::LN_10).floor() as i32, (high / std::f64::consts::LN_10).ceil() as i32);
+    let all = (first..=last).flat_map(|power| {
+        // Powers below zero divide, so that .2 is printed as that.
+        [1.0, 2.0, 5.0].map(|digit| if power < 0 { digit / 10_f64.powi(-power) } else { digit * 10_f64.powi(power) })
+    });
+    all.filter(|time| (low..=high).contains(&time.ln())).collect()
+}
+
+/// The least of 1, 2, 5 times a power of ten that is not below `least`.
+fn nice_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|digit| digit * power).find(|&step| step >= least).unwrap_or(10.0 * power)
+}
+
+fn mark(text: &mut String, scale: &Scale, point: &Point) {
+    let (x, y) = (scale.x(point.cpu_s), scale.y(point.loss_jod));
+    let class = format!("{}{}", point.importance.word(), if point.front { "" } else { " off" });
+    let tip = format!("<title>{}</title>", escaped(&words(point)));
+    match point.importance {
+        Modulated::No => {
+            put(text, format_args!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\">{tip}</circle>"))
+        }
+        Modulated::Thresholds => put(
+            text,
+            format_args!(
+                "<rect class=\"{class}\" x=\"{:.1}\" y=\"{:.1}\" width=\"7\" height=\"7\">{tip}</rect>",
+                x - 3.5,
+                y - 3.5
+            ),
+        ),
+        Modulated::Continuous => {
+            put(text, format_args!("<path class=\"{class}\" d=\"M{x:.1} {:.1}l5 9h-10z\">{tip}</path>", y - 5.5));
+        }
+    }
+    if point.knee {
+        put(text, format_args!("<circle class=\"knee\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\"/>"));
+    }
+}
+
+fn list(text: &mut String, scale: &Scale, front: &[&Point]) {
+    let left = PLOT[2] + 30.0;
+    let mut y = PLOT[1];
+    let mut line = |text: &mut String, words: &str, bold: bool| {
+        let weight = if bold { " font-weight=\"bold\"" } else { "" };
+        put(text, format_args!("<text x=\"{left}\" y=\"{y:.1}\"{weight}>{}</text>", escaped(words)));
+        y += LINE;
+    };
+    line(text, "The front: nothing quicker is as good", true);
+    for (number, point) in (1..).zip(front) {
+        let knee = if point.knee { " (knee)" } else { "" };
+        line(text, &format!("{number}  {}{knee}", words(point)), point.knee);
+        let (x, y) = (scale.x(point.cpu_s), scale.y(point.loss_jod));
+        put(text, format_args!("<text x=\"{:.1}\" y=\"{:.1}\" font-size=\"11\">{number}</text>", x + 7.0, y - 6.0));
+    }
+    line(text, "", false);
+    line(text, "circles: no importance map; squares: thresholds;", false);
+    line(text, "triangles: continuous importance; pale: not on the front", false);
+}
+
+fn words(point: &Point) -> String {
+    let crex = if point.crex.is_empty() { "direct light" } else { &point.crex };
+    let map = if point.importance == Modulated::No { String::new() } else { format!(", {}", point.importance.word()) };
+    format!("{crex}{map}, {} spp: {:.3} s, {:.2} JOD", point.spp, point.cpu_s, point.loss_jod)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+fn put(text: &mut String, what: std::fmt::Arguments<'_>) {
+    // Writing to a string does not fail.
+    let _ = text.write_fmt(what);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_numbers() {
+        assert_eq!(decades([0.15_f64.ln(), 3.0_f64.ln()]), [0.2, 0.5, 1.0, 2.0]);
+        assert_eq!([0.4, 0.5, 1.1, 7.0].map(nice_step), [0.5, 0.5, 2.0, 10.0]);
+    }
+
+    #[test]
+    fn crexes_do_not_break_the_picture() {
+        let point = |crex: &str, cpu_s, loss_jod| Point {
+            crex: crex.to_owned(),
+            importance: Modulated::No,
+            spp: 1,
+            wall_s: cpu_s,
+            cpu_s,
+            rays: 1,
+            loss_jod,
+            flip: 0.0,
+            rel_mse: 0.0,
+            front: false,
+            knee: false,
+        };
+        let curve = Curve::new(vec![point("<MRSGD>T*", 1.0, 1.0), point("", 0.5, 2.0), point("D", 0.0, f64::NAN)]);
+        let text = svg(&curve, "a < b");
+        assert!(text.contains("&lt;MRSGD&gt;T*") && text.contains("a &lt; b") && text.contains("direct light, 1 spp"));
+        assert!(!text.contains("NaN") && !text.contains("<MRSGD>"));
+        assert!(svg(&Curve::new(vec![]), "nothing").ends_with("</svg>\n"));
+    }
+}
