@@ -1,5 +1,6 @@
 //! `crex-report`: session logs to a report.
 
+use std::collections::HashSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -109,6 +110,10 @@ fn parse_level(text: &str) -> Result<f64, String> {
     parse_between(text, 0.0, 0.5)
 }
 
+/// The most people in an arm that may be typed: a thousand times all who live, and far below 2^53, to which counts are
+/// exact as floating-point numbers.
+const MOST_PEOPLE: u64 = 10_000_000_000_000;
+
 #[derive(Clone)]
 struct Counts {
     typed: String,
@@ -117,11 +122,13 @@ struct Counts {
 }
 
 fn parse_counts(text: &str) -> Result<Counts, String> {
-    let wrong = || "expected ARM=K/N with whole numbers K <= N, as in HQ/CBQ=9/16".to_owned();
+    let wrong = || {
+        format!("expected ARM=K/N with whole numbers K <= N, N at most {MOST_PEOPLE}, as in HQ/CBQ=9/16")
+    };
     let (arm, numbers) = text.rsplit_once('=').ok_or_else(wrong)?;
     let (k, n) = numbers.split_once('/').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse().map_err(|_| wrong());
-    let counts = Proportion::new(number(k)?, number(n)?).ok_or_else(wrong)?;
+    let counts = Proportion::new(number(k)?, number(n)?).filter(|counts| counts.n <= MOST_PEOPLE).ok_or_else(wrong)?;
     if arm.trim().is_empty() {
         return Err(wrong());
     }
@@ -157,8 +164,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let formats: [Format<Report>; 4] =
         [("html", Report::to_html), ("md", Report::to_markdown), ("json", Report::to_json), ("csv", Report::to_csv)];
     check_endings(&arguments.out, &formats)?;
+    let logs = expand(&arguments.logs)?;
+    check_kept(&arguments.out, &logs, arguments.stimuli.as_deref())?;
     let options = arguments.stimuli.as_deref().map(read_study).transpose()?.unwrap_or_default();
-    let report = make(arguments, &options)?;
+    let report = make(arguments, &logs, &options)?;
     deliver(&report, &arguments.out, &formats, arguments.json)
 }
 
@@ -195,6 +204,22 @@ fn check_endings<T>(outs: &[PathBuf], formats: &[Format<T>]) -> Result<(), Failu
     }
 }
 
+/// No output may take the place of what the report is made from: a log, its sidecar, the study's manifest.
+fn check_kept(outs: &[PathBuf], logs: &[PathBuf], stimuli: Option<&Path>) -> Result<(), Failure> {
+    let mut inputs: Vec<PathBuf> = logs.iter().flat_map(|log| [log.clone(), log.with_extension("json")]).collect();
+    inputs.extend(stimuli.map(|study| study.with_file_name(stimuli::manifest::FILE_NAME)));
+    inputs.extend(stimuli.map(|study| study.join(stimuli::manifest::FILE_NAME)));
+    let real = |path: &Path| path.canonicalize().ok();
+    let inputs: HashSet<PathBuf> = inputs.iter().filter_map(|input| real(input)).collect();
+    match outs.iter().find(|out| real(out).is_some_and(|out| inputs.contains(&out))) {
+        None => Ok(()),
+        Some(out) => {
+            let message = "the report is made from this file and would take its place; choose another name";
+            Err(Failure::Input(format!("-o {}: {message}", out.display())))
+        }
+    }
+}
+
 /// Writes what was asked for; Markdown to standard output where nothing was.
 fn deliver<T>(value: &T, outs: &[PathBuf], formats: &[Format<T>], json: bool) -> Result<(), Failure> {
     for out in outs {
@@ -214,9 +239,9 @@ fn deliver<T>(value: &T, outs: &[PathBuf], formats: &[Format<T>], json: bool) ->
     }
 }
 
-fn make(arguments: &Arguments, options: &Options) -> Result<Report, Failure> {
+fn make(arguments: &Arguments, logs: &[PathBuf], options: &Options) -> Result<Report, Failure> {
     if arguments.counts.is_empty() {
-        return report::of_logs(&expand(&arguments.logs)?, options).map_err(|error| {
+        return report::of_logs(logs, options).map_err(|error| {
             if error.is_input() { Failure::Input(error.to_string()) } else { Failure::Machine(error.to_string()) }
         });
     }

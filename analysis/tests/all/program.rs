@@ -64,6 +64,7 @@ fn wrong_input_ends_with_two_and_says_where() {
         (vec!["none.csv"], "none.csv"),
         (vec!["log.csv", "-o", "out.pdf"], "expected an ending"),
         (vec!["--counts", "HQ/CBQ=17/16"], "whole numbers K <= N"),
+        (vec!["--counts", "A=18446744073709551615/18446744073709551615"], "N at most 10000000000000"),
         (vec!["--counts", "A=1/2", "--counts", "A=1/2"], "was given before"),
         (vec!["--counts", "A=1/2", "--no-right-answer", "B"], "there is no such arm"),
         (vec![], "LOG"),
@@ -149,6 +150,35 @@ fn broken_logs_end_with_two_and_say_where() {
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{what}: {said}");
         assert!(said.contains(says), "{what}: {said}");
         assert_eq!(std::fs::read_to_string(folder.path().join("r.html")).unwrap(), "an earlier report", "{what}");
+    }
+}
+
+/// A report in place of the data that it is made from would lose them.
+#[test]
+fn an_output_never_takes_the_place_of_an_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let below = folder.path().join("data");
+    std::fs::create_dir(&below).unwrap();
+    let log = write(&below, "log.csv", &paper());
+    let sidecar = below.join("log.json");
+    std::fs::write(&sidecar, "{}").unwrap();
+    let before = std::fs::read(&log).unwrap();
+    let absolute = log.display().to_string();
+    for arguments in [
+        ["data/log.csv", "-o", "data/log.csv"],
+        ["data", "-o", "data/../data/log.csv"],
+        ["data", "-o", "data/log.json"],
+        ["data/log.csv", "-o", &absolute],
+    ] {
+        let output = run(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(text(&output.stderr).contains("would take its place"), "{}", text(&output.stderr));
+    }
+    assert_eq!((std::fs::read(&log).unwrap(), std::fs::read(&sidecar).unwrap()), (before, b"{}".to_vec()));
+    // Beside them is no harm, and a report may be made again.
+    for _ in 0..2 {
+        let output = run(folder.path(), &["data", "-o", "data/numbers.csv"]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     }
 }
 
