@@ -26,6 +26,8 @@ pub struct Session {
     pub line: u64,
     /// The critical trial, if it was answered.
     pub critical: Option<Trial>,
+    /// The critical pair was shown, whether or not it was answered.
+    pub shown: bool,
     /// The participant says to have known the purpose.
     pub knew_task: bool,
     /// Whether the obvious pair was told right.
@@ -130,7 +132,7 @@ fn take_in<R: std::io::Read>(session: &mut Session, row: &Trial, reader: &Reader
     session.knew_task |= row.known_task == Some(true);
     match row.phase {
         Phase::Practice => {}
-        Phase::Critical if session.critical.is_some() => {
+        Phase::Critical if session.shown => {
             let message = format!(
                 "a second critical trial of session `{}`: a participant has one; later trials are `informed`",
                 session.id
@@ -138,6 +140,7 @@ fn take_in<R: std::io::Read>(session: &mut Session, row: &Trial, reader: &Reader
             return Err(wrong(reader, "phase", message));
         }
         Phase::Critical => {
+            session.shown = true;
             if row.worse_answer.is_some() {
                 session.line = reader.place("phase").line;
                 session.critical = Some(row.clone());

@@ -82,8 +82,12 @@ fn a_session_keeps_its_person_and_its_arm() {
 fn a_second_critical_trial_is_refused() {
     let second = Trial { trial: 3, ..critical(1) };
     assert!(
-        error(&[critical(1), second]).contains("line 3, column 6 (phase): a second critical trial of session `s0001`")
+        error(&[critical(1), second.clone()])
+            .contains("line 3, column 6 (phase): a second critical trial of session `s0001`")
     );
+    // Who did not answer has seen the pair all the same.
+    let unanswered = Trial { worse_answer: None, correct: None, ..critical(1) };
+    assert!(error(&[unanswered, second]).contains("line 3, column 6 (phase): a second critical trial"));
 }
 
 #[test]

@@ -213,6 +213,8 @@ fn a_true_curve_is_rarely_said_not_to_fit() {
     let [low, high] = clopper_pearson(rejected, 0.999);
     println!("deviance of a true curve: {rejected} simulated, 99.9 % interval {low:.4} to {high:.4}, stated {ALPHA}");
     assert!(low <= ALPHA, "{rejected}");
+    // Nor is it a test that never rejects: a quarter of its level would be that.
+    assert!(high > 0.5 * ALPHA, "{rejected}");
 }
 
 /// What is said of habits: a preference for an interval or a layout, where nobody has one.

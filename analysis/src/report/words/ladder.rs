@@ -18,7 +18,7 @@ pub fn ladder(main: &Fit, all: &[Fit], steps: usize, level: f64) -> String {
             p_equals(p, p.log10())
         ),
         Some(p) => format!(
-            "The steps depart from the curve no more than chance would ({}{dispersion}).",
+            "That the steps depart from the curve by more than chance is not shown, nor ruled out ({}{dispersion}).",
             p_equals(p, p.log10())
         ),
     };
@@ -63,7 +63,8 @@ mod tests {
             say(fit(true, Some(0.4))),
             "On this ladder of 5 steps people begin to notice below 1 s of rendering (95 % interval 0.1 to 10 s; by the \
              logistic and the Weibull function 1 s and 1 s): there they are right halfway between guessing and \
-             their best. The steps depart from the curve no more than chance would (p = 0.4000, dispersion 1.5)."
+             their best. That the steps depart from the curve by more than chance is not shown, nor ruled out (p = 0.4000, \
+             dispersion 1.5)."
         );
         assert!(say(fit(true, None)).ends_with("Three steps cannot show whether the curve fits."));
         assert!(
