@@ -1,9 +1,11 @@
 //! `crex-report`: session logs to a report.
 
+use std::cell::Cell;
 use std::collections::HashSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use analysis::plan::Plan;
 use analysis::power::Question;
@@ -12,6 +14,7 @@ use analysis::report::planning::{Planning, Request, bound_of};
 use analysis::report::{self, Options, Report};
 use analysis::tally::ArmTally;
 use clap::{Args, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Computes what session logs show, and writes it as HTML, Markdown, JSON or CSV.
 #[derive(Parser)]
@@ -241,7 +244,10 @@ fn deliver<T>(value: &T, outs: &[PathBuf], formats: &[Format<T>], json: bool) ->
 
 fn make(arguments: &Arguments, logs: &[PathBuf], options: &Options) -> Result<Report, Failure> {
     if arguments.counts.is_empty() {
-        return report::of_logs(logs, options).map_err(|error| {
+        let bar = Bar::over(logs);
+        let made = report::of_logs_told(logs, options, &|bytes| bar.passed(bytes));
+        bar.bar.finish_and_clear();
+        return made.map_err(|error| {
             if error.is_input() { Failure::Input(error.to_string()) } else { Failure::Machine(error.to_string()) }
         });
     }
@@ -260,6 +266,29 @@ fn make(arguments: &Arguments, logs: &[PathBuf], options: &Options) -> Result<Re
     }
     let typed = arguments.counts.iter().map(|given| given.typed.clone()).collect();
     Ok(report::of_counts(&arms, typed, options))
+}
+
+/// How much of the logs is read, on standard error where that is a terminal, once it takes longer than a second.
+struct Bar {
+    bar: ProgressBar,
+    read: Cell<u64>,
+}
+
+impl Bar {
+    fn over(logs: &[PathBuf]) -> Self {
+        let bytes = logs.iter().filter_map(|log| log.metadata().ok()).map(|found| found.len()).sum();
+        let bar = ProgressBar::with_draw_target(Some(bytes), ProgressDrawTarget::stderr_with_hz(5));
+        let style = ProgressStyle::with_template("{wide_bar} {percent:>3} % {elapsed} left {eta}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self { bar, read: Cell::new(0) }
+    }
+
+    fn passed(&self, bytes: u64) {
+        self.read.set(self.read.get() + bytes);
+        if self.bar.elapsed() > Duration::from_secs(1) {
+            self.bar.set_position(self.read.get());
+        }
+    }
 }
 
 /// Folders replaced by the logs in them and below: the CSV files that have their sidecar, in order of name.

@@ -44,8 +44,9 @@ pub struct Provenance {
 }
 
 /// A reader that takes the digest of what passes through.
-pub(crate) struct HashingReader<R> {
+pub(crate) struct HashingReader<'a, R> {
     inner: R,
+    passed: &'a dyn Fn(u64),
     state: Rc<RefCell<Sha256>>,
 }
 
@@ -59,17 +60,19 @@ impl Digested {
     }
 }
 
-impl<R> HashingReader<R> {
-    pub(crate) fn new(inner: R) -> (Self, Digested) {
+impl<'a, R> HashingReader<'a, R> {
+    /// `passed` hears how many bytes came through, each time that some did.
+    pub(crate) fn new(inner: R, passed: &'a dyn Fn(u64)) -> (Self, Digested) {
         let state = Rc::new(RefCell::new(Sha256::new()));
-        (Self { inner, state: Rc::clone(&state) }, Digested(state))
+        (Self { inner, passed, state: Rc::clone(&state) }, Digested(state))
     }
 }
 
-impl<R: Read> Read for HashingReader<R> {
+impl<R: Read> Read for HashingReader<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let count = self.inner.read(buffer)?;
         self.state.borrow_mut().update(&buffer[..count]);
+        (self.passed)(count as u64);
         Ok(count)
     }
 }
@@ -80,7 +83,7 @@ mod tests {
 
     #[test]
     fn what_passes_is_digested() {
-        let (mut reader, digest) = HashingReader::new(&b"abc"[..]);
+        let (mut reader, digest) = HashingReader::new(&b"abc"[..], &|_| ());
         std::io::copy(&mut reader, &mut std::io::sink()).unwrap();
         // FIPS 180-2, appendix B.1.
         assert_eq!(digest.hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");

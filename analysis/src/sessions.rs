@@ -69,16 +69,17 @@ struct Checks {
 }
 
 /// Reads logs and hands every row and every session to `visitor`. All rows must be of one study, of one allocation plan
-/// and one set of stimuli, and either all simulated or none.
+/// and one set of stimuli, and either all simulated or none. `passed` hears how many bytes were read, each time that some
+/// were.
 ///
 /// # Errors
 /// When a log cannot be read or a row is wrong or does not belong with the others, with file, line and column.
-pub fn read(files: &[PathBuf], visitor: &mut impl Visitor) -> Result<Provenance, Error> {
+pub fn read(files: &[PathBuf], visitor: &mut impl Visitor, passed: &dyn Fn(u64)) -> Result<Provenance, Error> {
     let mut checks = Checks::default();
     let mut logs = Vec::new();
     for file in files {
         let opened = File::open(file).map_err(|source| Error::Io { file: file.clone(), source })?;
-        let (source, digest) = HashingReader::new(opened);
+        let (source, digest) = HashingReader::new(opened, passed);
         let mut reader = Reader::new(source, file)?;
         checks.files.push(file.clone());
         let rows = read_log(&mut reader, &mut checks, visitor)?;

@@ -98,8 +98,16 @@ pub struct Flow {
 /// # Errors
 /// When a log cannot be read or is wrong, with file, line and column.
 pub fn of_logs(logs: &[PathBuf], options: &Options) -> Result<Report, Error> {
+    of_logs_told(logs, options, &|_| ())
+}
+
+/// The same; `passed` hears how many bytes of the logs were read, each time that some were.
+///
+/// # Errors
+/// As [`of_logs`].
+pub fn of_logs_told(logs: &[PathBuf], options: &Options, passed: &dyn Fn(u64)) -> Result<Report, Error> {
     let mut gather = Gather::new(options);
-    let provenance = sessions::read(logs, &mut gather)?;
+    let provenance = sessions::read(logs, &mut gather, passed)?;
     Ok(gather.report(provenance, options))
 }
 

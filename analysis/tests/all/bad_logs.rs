@@ -122,6 +122,16 @@ fn a_broken_sidecar_is_reported_and_a_missing_log_is_input() {
     assert!(missing.is_input() && missing.to_string().contains("none.csv"));
 }
 
+/// What a progress bar is drawn from: every byte of every log, once.
+#[test]
+fn every_byte_read_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = [1, 2].map(|id| write(folder.path(), &format!("{id}.csv"), &[critical(id)]));
+    let told = std::cell::Cell::new(0);
+    report::of_logs_told(&logs, &Options::default(), &|bytes| told.set(told.get() + bytes)).unwrap();
+    assert_eq!(told.get(), logs.iter().map(|log| log.metadata().unwrap().len()).sum::<u64>());
+}
+
 #[test]
 fn practice_alone_is_no_answer() {
     let folder = tempfile::tempdir().unwrap();
