@@ -125,9 +125,7 @@ struct Counts {
 }
 
 fn parse_counts(text: &str) -> Result<Counts, String> {
-    let wrong = || {
-        format!("expected ARM=K/N with whole numbers K <= N, N at most {MOST_PEOPLE}, as in HQ/CBQ=9/16")
-    };
+    let wrong = || format!("expected ARM=K/N with whole numbers K <= N, N at most {MOST_PEOPLE}, as in HQ/CBQ=9/16");
     let (arm, numbers) = text.rsplit_once('=').ok_or_else(wrong)?;
     let (k, n) = numbers.split_once('/').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse().map_err(|_| wrong());
