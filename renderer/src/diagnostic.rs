@@ -121,6 +121,7 @@ fn as_blanks(text: &str) -> String {
 #[derive(Debug, Default)]
 pub(crate) struct Problems {
     errors: Vec<Error>,
+    closed: bool,
 }
 
 impl Problems {
@@ -133,7 +134,12 @@ impl Problems {
 
     /// Whether looking for more is pointless.
     pub(crate) fn full(&self) -> bool {
-        self.errors.len() >= MAX_ERRORS
+        self.closed || self.errors.len() >= MAX_ERRORS
+    }
+
+    /// Takes no more: the last one makes looking for others pointless.
+    pub(crate) fn close(&mut self) {
+        self.closed = true;
     }
 
     pub(crate) fn is_empty(&self) -> bool {

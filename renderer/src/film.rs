@@ -193,14 +193,14 @@ impl Film {
     }
 
     /// Stores sums over `samples` samples as means, in a block of the picture.
-    pub(crate) fn store(&mut self, block: Block, sums: &Planes, samples: u32) {
+    pub fn store(&mut self, block: Block, sums: &Planes, samples: u32) {
         let scale = 1.0 / f64::from(samples);
         let copy = |plane: &mut Raster<Vec3>, sums: &[Rgb]| {
             let stride = plane.width();
             for (row, sums) in sums.chunks_exact(block.width).enumerate() {
                 let start = (block.y + row) * stride + block.x;
                 let pixels = &mut plane.values_mut()[start..start + block.width];
-                pixels.iter_mut().zip(sums).for_each(|(pixel, sum)| *pixel = (*sum * scale).as_vec3());
+                pixels.iter_mut().zip(sums).for_each(|(pixel, sum)| *pixel = single(*sum * scale));
             }
         };
         copy(&mut self.direct, &sums.direct);
@@ -222,7 +222,7 @@ impl Film {
         for plane in layers.chain(&self.ambient) {
             sums.iter_mut().zip(plane.values()).for_each(|(sum, pixel)| *sum += pixel.as_dvec3());
         }
-        let pixels = sums.into_iter().map(|sum| sum.as_vec3()).collect();
+        let pixels = sums.into_iter().map(single).collect();
         Raster::from_values(self.width(), self.height(), pixels).expect("as many pixels as the direct plane")
     }
 
@@ -231,6 +231,11 @@ impl Film {
     pub fn beauty(&self) -> Raster<Vec3> {
         self.develop(ComponentSet::ALL)
     }
+}
+
+/// A radiance in single precision; what exceeds its range becomes its largest number.
+fn single(radiance: DVec3) -> Vec3 {
+    radiance.min(DVec3::splat(f64::from(f32::MAX))).as_vec3()
 }
 
 #[cfg(test)]

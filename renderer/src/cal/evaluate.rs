@@ -13,6 +13,9 @@ const MAX_DEPTH: u32 = 2000;
 /// Steps of one evaluation; a picture's pixel asks for some hundred.
 const MAX_STEPS: u64 = 1_000_000;
 
+/// Steps that the evaluations of a [`Evaluator::thrifty`] may take in all: this many, and so many more for each.
+const THRIFTY: (u64, u64) = (20_000_000, 500);
+
 /// Arguments of a call beyond these are evaluated anew each time they are used.
 const KEPT: usize = 10;
 
@@ -72,7 +75,10 @@ impl fmt::Display for EvaluationError {
             Self::NoChannel(n) => write!(f, "{} has no value here", super::channels::name(*n)),
             Self::NoArgument(n) => write!(f, "real argument {n} is missing"),
             Self::Endless => {
-                write!(f, "the evaluation goes deeper than {MAX_DEPTH} or takes more than {MAX_STEPS} steps")
+                write!(
+                    f,
+                    "the evaluation goes deeper than {MAX_DEPTH} or takes more than {MAX_STEPS} steps, or with all before it too many"
+                )
             }
         }
     }
@@ -97,6 +103,10 @@ pub struct Evaluator<'a> {
     memory: Memory,
     depth: u32,
     steps: u64,
+    /// Steps that this evaluation may take.
+    most: u64,
+    /// What is left for the evaluations to come, if they are bounded together.
+    left: Option<u64>,
 }
 
 /// A call in progress.
@@ -128,13 +138,20 @@ impl<'a> Evaluator<'a> {
         memory.values.resize(functions.symbols.len(), (0, 0.0));
         // The first place is 1: no value is kept for 0.
         memory.place += 1;
-        Self { functions, memory, depth: 0, steps: 0 }
+        Self { functions, memory, depth: 0, steps: 0, most: MAX_STEPS, left: None }
     }
 
     /// Its memory, for the next one.
     #[must_use]
     pub fn into_memory(self) -> Memory {
         self.memory
+    }
+
+    /// One for very many evaluations at once, as a generator makes: together they may take a second and some
+    /// microseconds each, so that a line of text with a costly function of a fine grid is an error and not an endless wait.
+    #[must_use]
+    pub fn thrifty(functions: &'a Functions) -> Self {
+        Self { left: Some(THRIFTY.0), ..Self::new(functions) }
     }
 
     /// Forgets the variables' values: what is asked next is asked at another place.
@@ -176,12 +193,16 @@ impl<'a> Evaluator<'a> {
     }
 
     fn start(&mut self) {
+        if let Some(left) = &mut self.left {
+            *left = (*left + THRIFTY.1).saturating_sub(self.steps);
+            self.most = MAX_STEPS.min(*left);
+        }
         (self.depth, self.steps) = (0, 0);
     }
 
     fn node(&mut self, id: NodeId, at: &dyn Surroundings, frame: Option<&Frame<'_>>) -> Result<f64> {
         self.steps += 1;
-        if self.depth >= MAX_DEPTH || self.steps > MAX_STEPS {
+        if self.depth >= MAX_DEPTH || self.steps > self.most {
             return Err(EvaluationError::Endless);
         }
         self.depth += 1;

@@ -95,7 +95,8 @@ impl Aggregate {
         let (outliers, [low, high]) = outliers(&bounds);
         let (centre, half) =
             if bounds.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (low + (high - low) * 0.5, (high - low) * 0.5) };
-        let half_extent = half.max_element();
+        // A scene that is smaller than a digit of its coordinates has no extent to divide by.
+        let half_extent = half.max_element().max(f64::EPSILON * centre.abs().max_element()).max(f64::MIN_POSITIVE);
         let inner: Vec<usize> = (0..bounds.len()).filter(|index| outliers.binary_search(index).is_err()).collect();
         let boxes: Vec<Aabb> = inner
             .iter()

@@ -30,6 +30,10 @@ pub enum ArgumentError {
     },
 }
 
+/// Largest colour, radiance or roughness. Products of those of a hit, of a path's ripple and of a light's solid angle,
+/// each bounded, then stay within `f64` (`docs/numerics.md`), and 1e30 W/(sr m2) is more than any star has.
+const LARGEST: f64 = 1e30;
+
 /// Takes real arguments one after the other, checking each.
 pub(super) struct Arguments<'a> {
     reals: &'a [f64],
@@ -63,9 +67,9 @@ impl<'a> Arguments<'a> {
         if holds(value) { Ok(value) } else { Err(ArgumentError::Range { position: self.taken, name, value, expected }) }
     }
 
-    /// The next argument, finite and not negative.
+    /// The next argument, not negative.
     pub(super) fn non_negative(&mut self, name: &'static str) -> Result<f64, ArgumentError> {
-        self.take(name, "a finite number, 0 or more", |x| (0.0..f64::INFINITY).contains(&x))
+        self.take(name, "a number from 0 to 1e30", |x| (0.0..=LARGEST).contains(&x))
     }
 
     /// The next argument, in [0, 1].
@@ -78,7 +82,7 @@ impl<'a> Arguments<'a> {
         self.take(name, "a finite number", f64::is_finite)
     }
 
-    /// The next three arguments as a colour, finite and not negative. Radiance clamps no colour, and neither does this.
+    /// The next three arguments as a colour, not negative. Radiance clamps no colour, and neither does this.
     pub(super) fn color(&mut self) -> Result<Rgb, ArgumentError> {
         Ok(Rgb::new(self.non_negative("red")?, self.non_negative("green")?, self.non_negative("blue")?))
     }

@@ -14,6 +14,11 @@ const OPAQUE_EXTINCTION: f64 = 100.0;
 /// Least squared cosine of refraction; below, all is reflected.
 const LEAST_COSINE2: f64 = 1e-6;
 
+/// Indices for which Fresnel's equations keep their digits; no matter has others.
+fn is_index(index: f64) -> bool {
+    (1e-3..=1e3).contains(&index)
+}
+
 /// The boundary of a solid whose inside is where its surface's normal points away from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dielectric {
@@ -36,15 +41,16 @@ impl Dielectric {
     /// Of the last only its part of the index counts, as in a Radiance built without dispersion.
     ///
     /// # Errors
-    /// If their number is not 5, a transmission is negative, or the index with Hartmann's part is not positive.
+    /// If their number is not 5, a transmission is negative, or the index, with Hartmann's part or without, lies outside [0.001, 1000].
     pub fn from_reals(reals: &[f64]) -> Result<Self, ArgumentError> {
         let names = "red green blue refractive-index Hartmann-constant";
         let mut arguments = Arguments::new(reals, &[5], "5", names)?;
         let transmission = arguments.color()?;
-        let index = arguments.take("refractive index", "a finite number above 0", |x| x > 0.0 && x < f64::INFINITY)?;
-        let dispersion = arguments.take("Hartmann constant", "a finite number that leaves the index above 0", |x| {
-            x.is_finite() && index + x / HARTMANN_NM > 0.0
-        })?;
+        let index = arguments.take("refractive index", "a number from 0.001 to 1000", is_index)?;
+        let dispersion =
+            arguments.take("Hartmann constant", "a number that leaves the index from 0.001 to 1000", |x| {
+                is_index(index + x / HARTMANN_NM)
+            })?;
         Ok(Self {
             extinction: transmission.to_array().map(extinction).into(),
             outside: Rgb::ZERO,
@@ -56,14 +62,13 @@ impl Dielectric {
     /// outside.
     ///
     /// # Errors
-    /// If their number is not 8, a transmission is negative or an index not positive.
+    /// If their number is not 8, a transmission is negative or an index outside [0.001, 1000].
     pub fn interface(reals: &[f64]) -> Result<Self, ArgumentError> {
         let names = "red green blue refractive-index, inside and outside";
         let mut arguments = Arguments::new(reals, &[8], "8", names)?;
         let mut medium = || {
             let transmission = arguments.color()?;
-            let index =
-                arguments.take("refractive index", "a finite number above 0", |x| x > 0.0 && x < f64::INFINITY)?;
+            let index = arguments.take("refractive index", "a number from 0.001 to 1000", is_index)?;
             Ok((Rgb::from(transmission.to_array().map(extinction)), index))
         };
         let ((inside, index), (outside, index_outside)) = (medium()?, medium()?);

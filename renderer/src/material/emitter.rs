@@ -96,7 +96,8 @@ impl Emitter {
         let radiance = arguments.color()?;
         let angle_deg = arguments.take("angle", "degrees above 0, at most 360", |x| x > 0.0 && x <= 360.0)?;
         let vector = DVec3::new(arguments.finite("dx")?, arguments.finite("dy")?, arguments.finite("dz")?);
-        let Some(aim) = vector.try_normalize() else {
+        // By its largest part first: the squares of small numbers are 0.
+        let Some(aim) = (vector / vector.abs().max_element()).try_normalize() else {
             let expected = "a direction that is not 0 0 0";
             return Err(ArgumentError::Range { position: 7, name: "dz", value: vector.z, expected });
         };

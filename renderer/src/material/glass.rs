@@ -12,6 +12,9 @@ const GLASS_INDEX: f64 = 1.52;
 /// Least transmissivity; black panes would otherwise give 0/0. Radiance has the same floor.
 const LEAST_TRANSMISSIVITY: f64 = 1e-15;
 
+/// Least fraction lost to each round of reflections inside a pane. Panes that do not amplify lose more.
+const LEAST_LOSS: f64 = 1e-9;
+
 /// A thin pane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glass {
@@ -32,12 +35,12 @@ impl Glass {
     /// From `R G B` or `R G B index`: transmissivities, not transmittances (88 % transmittance is .96).
     ///
     /// # Errors
-    /// If their number is not 3 or 4, a transmissivity is negative or the index is below 1.
+    /// If their number is not 3 or 4, a transmissivity is negative or the index lies outside [1, 1000].
     pub fn from_reals(reals: &[f64]) -> Result<Self, ArgumentError> {
         let mut arguments = Arguments::new(reals, &[3, 4], "3 or 4", "red green blue [refractive-index]")?;
         let transmissivity = arguments.color()?;
         let index = if reals.len() == 4 {
-            arguments.take("refractive index", "a finite number, 1 or more", |x| (1.0..f64::INFINITY).contains(&x))?
+            arguments.take("refractive index", "a number from 1 to 1000", |x| (1.0..=1e3).contains(&x))?
         } else {
             GLASS_INDEX
         };
@@ -62,10 +65,12 @@ impl Glass {
         let once2 = once * once;
         let mut pane = Pane { transmitted: Rgb::ZERO, reflected: Rgb::ZERO };
         for r in fresnel::boundary(1.0 / self.index, cosine, cosine_inside) {
-            let series = Rgb::ONE - once2 * (r * r);
+            // A pane that amplifies (a transmissivity above 1) may have no finite sum.
+            let series = (Rgb::ONE - once2 * (r * r)).max(Rgb::splat(LEAST_LOSS));
             pane.transmitted += once * (0.5 * (1.0 - r) * (1.0 - r)) / series;
             pane.reflected += (Rgb::ONE + once2 * (1.0 - 2.0 * r)) * (0.5 * r) / series;
         }
+        pane.reflected = pane.reflected.max(Rgb::ZERO);
         if self.transmissivity == Rgb::ZERO {
             pane.transmitted = Rgb::ZERO;
         }

@@ -23,7 +23,9 @@ pub(super) fn reflection(incoming: DVec3, normal: DVec3, variance: f64, to_light
     }
     let along2 = along * along;
     let tangent2 = (length2 - along2).max(0.0) / along2;
-    (-tangent2 / variance).exp() * length2 / (PI * variance * along2 * along2)
+    let height = (-tangent2 / variance).exp();
+    // At grazing angles both this and the denominator below may underflow: then nothing is reflected.
+    if height == 0.0 { 0.0 } else { height * length2 / (PI * variance * along2 * along2) }
 }
 
 /// Radiance's factor for light that a rough trans passes: the fraction passed per solid angle, with the light's

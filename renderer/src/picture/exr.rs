@@ -167,10 +167,26 @@ fn write_blocks(file: File, header: ExrHeader, blocks: &Receiver<Vec<Vec<u8>>>) 
     })
 }
 
+/// Refuses sizes that the file cannot hold: they would only ask for memory.
+fn check_size(bytes: &[u8]) -> Result<(), Kind> {
+    let damaged = |error: ::exr::error::Error| Kind::Damaged(error.to_string());
+    let meta = ::exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(damaged)?;
+    for header in &meta.headers {
+        let pixels = header.layer_size.width().saturating_mul(header.layer_size.height());
+        let channels = header.channels.list.len().max(1);
+        // Deflate makes at most 1032 bytes of one, two of which are a sample; the wavelet codecs do not reach that.
+        if pixels.saturating_mul(channels) > bytes.len().saturating_mul(1032) {
+            return Err(Kind::Damaged(format!("it is too short for {pixels} pixels of {channels} channels")));
+        }
+    }
+    Ok(())
+}
+
 /// Reads the first part of a file: `R G B` (or `Y`) and every `NAME.R NAME.G NAME.B`.
 pub(super) fn read(bytes: &[u8]) -> Result<Picture, Kind> {
     use api::{ReadChannels, ReadLayers, read};
 
+    check_size(bytes)?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()

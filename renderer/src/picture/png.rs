@@ -115,6 +115,10 @@ impl Decoded {
         decoder.set_transformations(::png::Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(decoding)?;
         let size = reader.output_buffer_size().ok_or_else(size_mismatch)?;
+        // Deflate makes at most 1032 bytes of one: larger sizes would only ask for memory.
+        if size > bytes.len().saturating_mul(1032) {
+            return Err(size_mismatch());
+        }
         let mut data = vec![0; size];
         let frame = reader.next_frame(&mut data).map_err(decoding)?;
         data.truncate(frame.buffer_size());

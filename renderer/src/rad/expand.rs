@@ -95,6 +95,8 @@ pub(super) struct Loader<'a> {
     active: Vec<u32>,
     /// Whether a command gave nothing because of an error: names that it would define are missing then.
     pub(super) incomplete: bool,
+    /// What generators have made so far: it is in memory, whatever becomes of it.
+    made: Size,
 }
 
 /// What has gone wrong is in the problems already.
@@ -112,6 +114,7 @@ impl<'a> Loader<'a> {
             nodes: HashMap::new(),
             active: Vec::new(),
             incomplete: false,
+            made: Size::default(),
         }
     }
 
@@ -243,7 +246,7 @@ impl<'a> Loader<'a> {
                 name => {
                     let mut read = |word: &Word| self.read_words(word, folder);
                     match generate::run(name, words, span, &mut read) {
-                        Ok(drafts) => Ok(Plan::Made(drafts.into_iter().map(Statement::Primitive).collect())),
+                        Ok(drafts) => self.keep(span, drafts.into_iter().map(Statement::Primitive).collect()),
                         Err(bad) => Err(Some(bad)),
                     }
                 }
@@ -257,6 +260,19 @@ impl<'a> Loader<'a> {
             })?);
         }
         input.ok_or(Reported)
+    }
+
+    /// What a generator made, unless all of them together make too much.
+    fn keep(&mut self, span: Span, made: Rc<[Statement]>) -> Result<Plan, Option<BadWords>> {
+        self.made = self.made.plus(Size::of(&made));
+        match self.excess(self.made) {
+            None => Ok(Plan::Made(made)),
+            Some(message) => {
+                self.report(span, message.replace("this command makes", "the commands up to this one make"));
+                self.problems.close();
+                Err(None)
+            }
+        }
     }
 
     /// A program that is not one of ours: refused, or run by the caller's leave up to the end of its stage.

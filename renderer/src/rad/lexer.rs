@@ -61,9 +61,11 @@ impl<'a> Lexer<'a> {
         let start = self.at;
         let bytes = self.text.as_bytes();
         loop {
+            let line = self.at;
             self.skip_line();
             let mut end = self.at;
-            if end > start && bytes[end - 1] == b'\n' {
+            // Past the last line end there is no line to go on with.
+            if end > line && bytes[end - 1] == b'\n' {
                 end -= 1;
             } else {
                 return (start, end);
@@ -152,5 +154,6 @@ mod tests {
             assert_eq!(lexer.word().unwrap().text, "rest");
         }
         assert_eq!(Lexer::new("!a \\", 0).command_line(), (0, 4));
+        assert_eq!(Lexer::new("!a \\\n", 0).command_line(), (0, 5));
     }
 }

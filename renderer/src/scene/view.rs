@@ -5,6 +5,9 @@ use glam::{DVec2, DVec3};
 use crate::geometry::Ray;
 use crate::rad::{ViewKind, ViewSpec};
 
+/// Lengths beyond this are refused, as in scenes: their cubes would leave the range of `f64`.
+const LARGEST: f64 = 1e75;
+
 /// Why parameters give no view.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ViewError {
@@ -27,9 +30,11 @@ pub enum ViewError {
     /// A clipping plane in front of where it may be.
     #[error("the fore plane (-vo) must not be negative, and the aft plane (-va) must be 0 or lie behind it")]
     Planes,
-    /// A number that is not finite.
-    #[error("the view point, shift and lift must be finite numbers")]
-    NotFinite,
+    /// A number out of range.
+    #[error(
+        "the view point, its clipping distances and what it is shifted and lifted by must be numbers of at most 1e75"
+    )]
+    TooLarge,
 }
 
 /// A view, ready to make rays.
@@ -53,9 +58,6 @@ impl View {
         // rpict takes vectors within 1e-6 of each other as parallel.
         let right = if right.length() > 1e-6 { right.normalize() } else { return Err(ViewError::Up) };
         let point = DVec3::from(spec.point);
-        if !(point.is_finite() && spec.shift.is_finite() && spec.lift.is_finite()) {
-            return Err(ViewError::NotFinite);
-        }
         if !(spec.fore >= 0.0
             && spec.fore.is_finite()
             && (spec.aft == 0.0 || spec.aft > spec.fore)
@@ -67,6 +69,14 @@ impl View {
             extent(spec.kind, "width (-vh)", spec.horizontal, spec.kind == ViewKind::Cylindrical)?,
             extent(spec.kind, "height (-vv)", spec.vertical, false)?,
         );
+        let offsets = (DVec2::new(spec.shift, spec.lift).abs() + 1.0) * extent;
+        let lengths = DVec2::new(spec.fore, spec.aft);
+        // NaN is in no range.
+        let within = |length: f64| length <= LARGEST;
+        if !(point.to_array().into_iter().chain(offsets.to_array()).chain(lengths.to_array())).all(|x| within(x.abs()))
+        {
+            return Err(ViewError::TooLarge);
+        }
         Ok(Self { spec, point, direction, right, up: right.cross(direction), extent })
     }
 
@@ -276,7 +286,7 @@ mod tests {
         assert_eq!(error(ViewSpec { direction: [f64::NAN; 3], ..base }), ViewError::Direction);
         assert_eq!(error(ViewSpec { up: [0.0, 3.0, 0.0], ..base }), ViewError::Up);
         assert_eq!(error(ViewSpec { aft: 1.0, fore: 2.0, ..base }), ViewError::Planes);
-        assert_eq!(error(ViewSpec { point: [f64::INFINITY; 3], ..base }), ViewError::NotFinite);
+        assert_eq!(error(ViewSpec { point: [f64::INFINITY; 3], ..base }), ViewError::TooLarge);
         assert!(error(ViewSpec { horizontal: 180.0, ..base }).to_string().contains("-vh"));
         assert!(error(ViewSpec { vertical: 0.0, ..base }).to_string().contains("-vv"));
         assert!(error(ViewSpec { vertical: f64::NAN, ..base }).to_string().contains("-vv"));

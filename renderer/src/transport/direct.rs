@@ -53,6 +53,9 @@ const MOST_CROSSINGS: usize = 256;
 /// Coefficient below which a refracted shadow ray is given up, as in rpict.
 const LEAST_COEFFICIENT: f64 = 1e-6;
 
+/// Where the fraction that a row of panes lets through saturates (their transmissivities are not clamped).
+const MOST_PASSED: f64 = 1e30;
+
 /// Where direct light is asked for.
 pub(super) struct Lit<'a> {
     pub(super) scene: &'a Scene,
@@ -134,7 +137,7 @@ impl Lit<'_> {
             }
             for hit in crossings.iter() {
                 match self.straight(light, hit, &leg.ray, memory) {
-                    Some(passed) => fraction *= passed,
+                    Some(passed) => fraction = (fraction * passed).min(Rgb::splat(MOST_PASSED)),
                     None => return Rgb::ZERO,
                 }
             }
@@ -238,6 +241,7 @@ impl Lit<'_> {
             if fraction.max_element() < LEAST_COEFFICIENT {
                 return Rgb::ZERO;
             }
+            fraction = fraction.min(Rgb::splat(MOST_PASSED));
             ray = Ray::new(hit.point, dir).leaving(hit.surface);
         }
         Rgb::ZERO

@@ -13,6 +13,10 @@ use super::bins::{RayBins, SpawnRecord};
 use super::dimension;
 use super::ray::RayPath;
 
+/// Where a ripple saturates. Surfaces that reflect more than they receive (colours are not clamped) would else take it
+/// beyond `f64`, and the first black surface behind them would make NaN of infinity times zero.
+const LARGEST_RIPPLE: f64 = 1e60;
+
 /// Where paths end and how many rays a hit spawns: rpict's options of the same letters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -109,7 +113,11 @@ impl Spawner<'_> {
     pub(super) fn spawn(&mut self, from: &Departure<'_>, lobe: &Lobe, sampler: &Sampler) {
         let parent = from.path;
         let component = Component::of(lobe.event);
-        let mut ripple = from.ripple * lobe.coefficient;
+        let mut ripple = (from.ripple * lobe.coefficient).min(Rgb::splat(LARGEST_RIPPLE));
+        // Faded out altogether, or a blue filter behind a red one: nothing that it meets can show.
+        if ripple == Rgb::ZERO {
+            return;
+        }
         let mut weight = from.weight * (lobe.coefficient.max_element().min(1.0) as f32);
         let reflections = parent.reflections + u32::from(lobe.event.counts_as_reflection());
         let diffuse = parent.diffuse + u32::from(component == Component::Diffuse);

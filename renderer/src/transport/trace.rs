@@ -135,7 +135,9 @@ impl Tracer<'_> {
 
     /// Adds light to the plane that a ray's light belongs to.
     fn file(&self, ray: &PathRay, light: Rgb, spawner: &mut Spawner<'_>) {
-        if light != Rgb::ZERO {
+        // What every factor is bounded for (`docs/numerics.md`); should one not be, black is the lesser evil.
+        debug_assert!(light.is_finite(), "{light} along {ray:?}");
+        if light != Rgb::ZERO && light.is_finite() {
             spawner.planes.add(ray.path.pixel, ray.path.plane(self.layers), light);
         }
     }

@@ -20,6 +20,9 @@ pub struct Cone {
     inward: bool,
 }
 
+/// Radius gained per unit of length from which on the ends of a frustum count as one.
+const STEEPEST: f64 = 1e75;
+
 impl Cone {
     /// The frustum between two points with a radius (not negative) at each; `inward` for cup and tube.
     pub fn new(ends: [DVec3; 2], radii: [f64; 2], inward: bool) -> Result<Self, Degenerate> {
@@ -33,7 +36,12 @@ impl Cone {
         }
         let length = (span / scale).length() * scale;
         let axis = (span / scale).normalize();
-        Ok(Self { base: ends[0], axis, length, base_radius: radii[0], slope: (radii[1] - radii[0]) / length, inward })
+        let slope = (radii[1] - radii[0]) / length;
+        // Flatter than that it is a ring, and the slope's square would leave the range of numbers.
+        if slope.abs() > STEEPEST || radii.iter().all(|radius| radius / length > STEEPEST) {
+            return Err(Degenerate::NoLength);
+        }
+        Ok(Self { base: ends[0], axis, length, base_radius: radii[0], slope, inward })
     }
 
     /// The first end, and the unit vector from there to the other.

@@ -83,7 +83,7 @@ impl Curves {
     }
 
     pub(super) fn evaluator(&self) -> Evaluator<'_> {
-        Evaluator::new(&self.functions)
+        Evaluator::thrifty(&self.functions)
     }
 }
 

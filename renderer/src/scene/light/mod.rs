@@ -21,6 +21,9 @@ use relay::Plane;
 pub(super) use relay::relayed;
 use sampler::Sampler;
 
+/// Where a sample's solid angle saturates, sr.
+const MOST_SOLID_ANGLE: f64 = 1e30;
+
 /// A light source, or the image of one in mirrors.
 #[derive(Clone, Debug)]
 pub struct Light {
@@ -125,7 +128,8 @@ impl Light {
         (sample.solid_angle > 0.0 && sample.solid_angle.is_finite()).then_some(LightSample {
             dir: sample.dir,
             distance: sample.distance,
-            solid_angle: sample.solid_angle,
+            // Next to a light's edge an estimate by area may be any number; a product with it must not overflow.
+            solid_angle: sample.solid_angle.min(MOST_SOLID_ANGLE),
             radiance: self.emitter.radiance(),
         })
     }

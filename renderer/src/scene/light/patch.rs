@@ -12,7 +12,7 @@ pub(super) enum Patch {
     Parallelogram([DVec3; 3]),
     /// Triangles that do not overlap, each with the share of the area that it and those before it cover.
     Triangles(Vec<([DVec3; 3], f64)>),
-    /// A polygon that falls into no triangles (it crosses itself): a rectangle around it, of which points outside the
+    /// A polygon that falls into no triangles (it crosses itself, or has very many corners): a rectangle around it, of which points outside the
     /// polygon are dark.
     Boxed { corner: DVec3, edges: [DVec3; 2], outline: Vec<DVec2> },
     /// An annulus between squared radii.
@@ -133,9 +133,16 @@ fn is_inside(outline: &[DVec2], at: DVec2) -> bool {
     inside
 }
 
+/// Corners up to which an outline is cut into triangles: the time grows with their cube at worst.
+const MOST_CORNERS: usize = 1000;
+
 /// Triangles of a counter-clockwise outline that may be concave and have holes by seams: cuts off one corner after the other
-/// that holds no other vertex (Meisters, "Polygons Have Ears", 1975). `None` if no corner is left to cut: the outline crosses itself.
+/// that holds no other vertex (Meisters, "Polygons Have Ears", 1975). `None` if no corner is left to cut: the outline crosses itself; or if
+/// there are more than [`MOST_CORNERS`].
 fn clip_ears(outline: &[DVec2]) -> Option<Vec<[usize; 3]>> {
+    if outline.len() > MOST_CORNERS {
+        return None;
+    }
     let mut left: Vec<usize> = (0..outline.len()).collect();
     let mut ears = Vec::with_capacity(outline.len().saturating_sub(2));
     while left.len() > 2 {
