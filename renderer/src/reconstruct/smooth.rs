@@ -48,7 +48,7 @@ pub struct Guides<'a> {
     pub normal: &'a Raster<Vec3>,
     /// Points, in the scene's unit, relative to the eye; zero where nothing is met.
     pub point: &'a Raster<Vec3>,
-    /// Diffuse reflectance, in [0, 1]; `None` for light that is not in proportion to it.
+    /// Diffuse reflectance, in [0, 1], zero where light is not in proportion to it; `None`: it is nowhere.
     pub albedo: Option<&'a Raster<Vec3>>,
 }
 
@@ -73,6 +73,8 @@ struct Inputs {
     variance: Padded,
     normal: [Padded; 3],
     point: [Padded; 3],
+    /// 1 where light was divided by the reflectance, 0 where not: two kinds that do not mix.
+    divided: Padded,
     /// One over the square of the distance from a plane at which surfaces part.
     parting: Padded,
 }
@@ -82,11 +84,12 @@ struct Inputs {
 #[must_use]
 pub fn smooth(halves: [&Raster<Vec3>; 2], shares: [f32; 2], guides: &Guides<'_>) -> Smoothed {
     let (width, height) = (halves[0].width(), halves[0].height());
-    let divisor = |pixel: usize| match guides.albedo.map(|albedo| albedo.values()[pixel]) {
-        Some(albedo) if albedo.min_element() >= LEAST_ALBEDO => albedo,
-        _ => Vec3::ONE,
+    let albedo = |pixel: usize| {
+        let albedo = guides.albedo.map(|albedo| albedo.values()[pixel]);
+        albedo.filter(|albedo| albedo.min_element() >= LEAST_ALBEDO)
     };
-    let inputs = Inputs::new(halves, guides, divisor);
+    let divisor = |pixel: usize| albedo(pixel).unwrap_or(Vec3::ONE);
+    let inputs = Inputs::new(halves, guides, divisor, |pixel| albedo(pixel).is_some());
     let mut bands: Vec<[Vec<Vec3>; 2]> = Vec::new();
     let starts: Vec<usize> = (0..height).step_by(BAND).collect();
     starts
@@ -112,7 +115,12 @@ pub fn smooth(halves: [&Raster<Vec3>; 2], shares: [f32; 2], guides: &Guides<'_>)
 }
 
 impl Inputs {
-    fn new(halves: [&Raster<Vec3>; 2], guides: &Guides<'_>, divisor: impl Fn(usize) -> Vec3 + Sync) -> Self {
+    fn new(
+        halves: [&Raster<Vec3>; 2],
+        guides: &Guides<'_>,
+        divisor: impl Fn(usize) -> Vec3 + Sync,
+        is_divided: impl Fn(usize) -> bool + Sync,
+    ) -> Self {
         let (width, height) = (halves[0].width(), halves[0].height());
         let margin = REACH + PATCH;
         let plane = |value: &(dyn Fn(usize) -> f32 + Sync)| Padded::new(width, height, margin, value);
@@ -138,6 +146,7 @@ impl Inputs {
             variance: plane(&|pixel| variance[pixel]),
             normal: of(guides.normal),
             point: of(guides.point),
+            divided: plane(&|pixel| f32::from(u8::from(is_divided(pixel)))),
             parting: plane(&|pixel| {
                 let distance = PLANES * guides.point.values()[pixel].length();
                 if distance > 0.0 { 1.0 / (distance * distance) } else { 0.0 }
@@ -215,8 +224,10 @@ impl Inputs {
         let other_normal = self.normal.each_ref().map(|plane| plane.row(x2, y2, width));
         let other_point = self.point.each_ref().map(|plane| plane.row(x2, y2, width));
         let parting = self.parting.row(0, y, width);
+        let (divided, other_divided) = (self.divided.row(0, y, width), self.divided.row(x2, y2, width));
         for (x, alike) in alike.iter_mut().enumerate() {
-            let (mut turned, mut above, mut below) = (0.0, 0.0, 0.0);
+            let kinds = divided[x] - other_divided[x];
+            let (mut turned, mut above, mut below) = (kinds * kinds, 0.0, 0.0);
             for axis in 0..3 {
                 let (n, m) = (normal[axis][x], other_normal[axis][x]);
                 let way = other_point[axis][x] - point[axis][x];

@@ -54,13 +54,21 @@ impl Renderer<'_> {
     /// Smooths planes of a film, of which `first` holds the mean of the first half of the samples.
     fn smooth_planes(&self, components: ComponentSet, first: &Film, film: &mut Film) -> Vec<SmoothedPlane> {
         let (tracer, samples) = (self.tracer(), self.samples());
-        let wanted = Wanted { depth: true, normal: true, ..Wanted::default() };
+        let wanted = Wanted { depth: true, normal: true, albedo: true, ..Wanted::default() };
         let hits = tracer.first_hits(&samples, wanted, 1);
         let wanted = Wanted { albedo: true, ..Wanted::default() };
         let albedo = tracer.first_hits(&samples, wanted, ALBEDO_GRID).albedo;
-        let (Some(depth), Some(normal), Some(albedo)) = (hits.depth, hits.normal, albedo) else {
+        let (Some(depth), Some(normal), Some(middle), Some(mut albedo)) =
+            (hits.depth, hits.normal, hits.albedo, albedo)
+        else {
             return Vec::new();
         };
+        // A pixel that is partly a mirror or a pane shows light that its reflectance has no part in.
+        for (albedo, middle) in albedo.values_mut().iter_mut().zip(middle.values()) {
+            if albedo.max_element() < 0.5 * middle.max_element() || middle.max_element() == 0.0 {
+                *albedo = Vec3::ZERO;
+            }
+        }
         let point = self.points(&depth);
         let count = self.settings.samples;
         let shares = [self.first_half(), count - self.first_half()].map(|part| part as f32 / count as f32);
