@@ -108,6 +108,8 @@ const PICTURES: &[(&str, &str, &str, Option<u32>, u32)] = &[
     ("trans_c_ab2", "trans_c", "(TRSGMD)*", Some(2), 256),
     ("glow_b_ab0", "glow_b", "(TRSGM)*", None, 64),
     ("glow_b_ab1", "glow_b", "(TRSGMD)*", Some(1), 256),
+    ("extreme_d_ab0", "extreme_d", "(TRSGM)*", None, 64),
+    ("extreme_d_ab1", "extreme_d", "(TRSGMD)*", Some(1), 256),
 ];
 
 /// Crexes with the words that they trace: the table to add up, and a pattern that a word must match whole.
@@ -139,6 +141,22 @@ const LANGUAGES: &[(&str, &str, &str)] = &[
     ("cornell_D2", "D", "D?"),
     ("cornell_D2", "(DT)T", "D?T?T?"),
 ];
+
+/// What the dim lamps of `extreme_d` light while another of 1e8 shines elsewhere: two panels of 5e-6 and 1e-6, and the
+/// walls of two niches at 1e-8, of which no bright light comes. The walls agree within 3 %; a panel
+/// shows its own radiance (rpict's picture has 8 bits of it).
+fn dim_blocks() -> Result<(), Failed> {
+    let found = blocks(&load("extreme_d")?, "(TRSGM)*", 64, None)?;
+    let expected = tables::picture("extreme_d_ab0").blocks;
+    let dim: Vec<(f64, f64)> = found.into_iter().zip(expected).filter(|&(_, expected)| expected < 1e-5).collect();
+    let off = |&(found, expected): &(f64, f64)| (found / expected - 1.0).abs();
+    let walls = dim.iter().filter(|(_, expected)| *expected < 5e-7).map(off).fold(0.0, f64::max);
+    let panel = |found: f64| f64::min((found / 5e-6 - 1.0).abs(), (found / 1e-6 - 1.0).abs());
+    let panels =
+        dim.iter().filter(|(_, expected)| *expected > 5e-7).map(|&(found, _)| panel(found)).fold(0.0, f64::max);
+    println!("extreme_d: {} dim blocks, walls off by at most {walls:.1e}, panels by {panels:.1e}", dim.len());
+    if dim.len() == 8 && walls <= 0.03 && panels <= 1e-6 { Ok(()) } else { Err(format!("{dim:?}").into()) }
+}
 
 /// Noise of the word tables, over 8x8 pixel blocks, relative to the picture's mean: the largest that their makers give
 /// for a sum of words without and with D.
@@ -174,5 +192,6 @@ pub(crate) fn trials() -> Vec<Trial> {
         })
         .with_ignored_flag(absent(table))
     });
-    pictures.chain(languages).collect()
+    let dim = Trial::test("reference::extreme_d_dim", dim_blocks);
+    pictures.chain(languages).chain([dim]).collect()
 }
