@@ -14,7 +14,7 @@ crex=${CREX:-target/release/crex}
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 TIMEFORMAT='%U %S'
-printf 'peak_cd_m2 = 250\nblack_cd_m2 = .5\nambient_lux = 50\nwidth_px = %d\nheight_px = %d\nwidth_m = .3372\ndistance_m = .6\n' \
+printf 'peak_cd_m2 = 250\nblack_cd_m2 = 0.5\nambient_lux = 50\nwidth_px = %d\nheight_px = %d\nwidth_m = 0.3372\ndistance_m = 0.6\n' \
     "$width" $((width * 4 / 5)) >"$dir/display.toml"
 
 # CPU seconds of a rendering: timed NAME WORDS...
