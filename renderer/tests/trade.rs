@@ -77,7 +77,7 @@ fn wrong_words_write_nothing() {
         ("trade", &["--spp", "0"], "--spp"),
         ("trade", &["--crex", "X"], "means nothing in a crex"),
         ("trade", &["--importance", "none.png"], "none.png"),
-        ("auto", &["--tolerance", "-1"], "--tolerance"),
+        ("auto", &["--tolerance", "0"], "--tolerance"),
         ("auto", &["--exposure", "0"], "--exposure"),
         ("auto", &["--display", "none.toml"], "none.toml"),
     ] {
