@@ -198,7 +198,7 @@ pub(crate) fn wild_scene(numbers: &mut Numbers) -> String {
                     'c' | 'r' => numbers.extreme(1e30).abs(),
                     'f' => numbers.extreme(1.0).abs().min(1.0),
                     'i' => (1.0 + numbers.extreme(999.0).abs()).min(1e3),
-                    'a' => numbers.extreme(360.0).abs().min(360.0).max(1e-6),
+                    'a' => numbers.extreme(360.0).abs().clamp(1e-6, 360.0),
                     'p' => numbers.extreme(1e20).abs(),
                     'l' => numbers.extreme(1e20),
                     'n' => [5e-324, -1.0, 1e20][numbers.below(3) as usize],

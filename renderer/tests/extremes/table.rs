@@ -51,8 +51,11 @@ pub(crate) struct Case {
     run: fn() -> Row,
 }
 
+/// What a case is called, and how it is run.
+pub(crate) type Named = (&'static str, fn() -> Row);
+
 /// Cases of one group.
-pub(crate) fn group(group: &'static str, cases: &[(&'static str, fn() -> Row)]) -> Vec<Case> {
+pub(crate) fn group(group: &'static str, cases: &[Named]) -> Vec<Case> {
     cases.iter().map(|&(name, run)| Case { group, name, run }).collect()
 }
 

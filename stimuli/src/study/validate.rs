@@ -321,7 +321,11 @@ mod tests {
         let study = Study::parse(&shipped(), Path::new("study.toml")).unwrap();
         assert!((study.display.pixels_per_degree() - 39.75).abs() < 0.005, "17 inches, 1280 x 1024, 60 cm");
         let pictures: Vec<_> = study.stimuli().iter().map(super::Stimulus::id).collect();
-        assert_eq!(pictures[..4], ["a_hq", "a_cbq", "b_hq", "b_cbq"], "each once, critical ones first");
+        assert_eq!(
+            pictures[..6],
+            ["a_hq", "a_cbq", "a_sel", "b_hq", "b_cbq", "b_sel"],
+            "each once, critical ones first"
+        );
     }
 
     #[test]

@@ -1,0 +1,286 @@
+//! A request of `crex render`: everything that its pictures depend on, read and checked.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args as _, FromArgMatches as _};
+use renderer::component::{Component, ComponentSet};
+use renderer::crex::{self, Program, Setting};
+use renderer::film::Layers;
+use renderer::importance::map::ImportanceMap;
+use renderer::picture::{Input, Provenance, grey};
+use renderer::rad::RifView;
+use renderer::render::{RenderError, Renderer, Rendering, Settings, Snapshot};
+use renderer::scene::{Scene, View};
+use renderer::schedule::MonotonicClock;
+use renderer::transport::Limits;
+use stimuli::Sha256;
+
+use super::{Args, LayerChoice};
+use crate::console::{self, Failure, Progress};
+use crate::options::RadianceOptions;
+use crate::scene_files::{self, LoadedScene, SceneArgs};
+use crate::{plan, timed};
+
+/// Takes the picture after every stage.
+type Show<'a> = &'a mut (dyn FnMut(Snapshot<'_>) + Send);
+
+/// Everything that a picture depends on, checked.
+pub(crate) struct Request {
+    pub(crate) program: Program,
+    pub(crate) view: View,
+    pub(crate) settings: Settings,
+    pub(crate) importance: Option<ImportanceMap>,
+    pub(crate) thresholds: Option<Vec<f32>>,
+    pub(crate) continuous: bool,
+    /// Components whose planes are smoothed.
+    pub(crate) filter: Vec<Component>,
+    pub(crate) provenance: Provenance,
+}
+
+/// A scene and what is asked of it, ready to be rendered.
+pub(crate) struct Prepared {
+    pub(crate) request: Request,
+    /// The files that were read for the scene.
+    pub(crate) files: Vec<PathBuf>,
+    scene: Scene,
+    scene_inputs: Vec<Input>,
+}
+
+/// Reads and checks everything; warnings go to standard error.
+pub(crate) fn prepare(args: &Args, options: &RadianceOptions) -> Result<Prepared, Failure> {
+    for message in &options.without_effect {
+        console::say("note", message);
+    }
+    let ast = plan::parse(&args.crex)?;
+    let LoadedScene { mut scene, inputs, files, views } = scene_files::load(&args.scene.scenes, &args.scene.search)?;
+    scene.set_relays(options.relays);
+    let scene_inputs = inputs.clone();
+    let with_view = rif_view(args.view.as_deref(), &views, options)?;
+    let options = with_view.as_ref().unwrap_or(options);
+    let request = request(args, options, Program::new(&ast), inputs)?;
+    let setting = Setting {
+        components: Some(scene.components(options.glossy_threshold)),
+        importance_map: Some(args.importance.is_some()),
+        time_limit: Some(args.time.is_some()),
+    };
+    for warning in crex::warnings(&ast, &setting) {
+        console::say("warning", &warning.render(&args.crex));
+    }
+    Ok(Prepared { request, files, scene, scene_inputs })
+}
+
+/// The options with the view of that name, or the first one if no view is given otherwise.
+fn rif_view(
+    name: Option<&str>,
+    views: &[(RifView, String)],
+    options: &RadianceOptions,
+) -> Result<Option<RadianceOptions>, Failure> {
+    let chosen = match name {
+        Some(name) => Some(views.iter().find(|(view, _)| view.name.as_deref() == Some(name)).ok_or_else(|| {
+            let names: Vec<&str> = views.iter().filter_map(|(view, _)| view.name.as_deref()).collect();
+            Failure::input(format!("no .rif file has a view `{name}`; views: {}", names.join(", ")))
+        })?),
+        None if options.view_given => None,
+        None => views.first(),
+    };
+    let Some((view, folder)) = chosen else { return Ok(None) };
+    let mut options = options.clone();
+    options.take_view(&view.options, Path::new(folder)).map_err(Failure::input)?;
+    Ok(Some(options))
+}
+
+/// The same for commands that choose crex and samples themselves: everything but those as `crex render` takes it.
+pub(crate) fn prepare_scene(
+    scene: &SceneArgs,
+    threads: Option<u32>,
+    seed: u64,
+    importance: Option<&Path>,
+    options: &RadianceOptions,
+) -> Result<Prepared, Failure> {
+    let mut words: Vec<std::ffi::OsString> =
+        ["render", "scene", "--crex", "", "-o", "-", "--seed"].map(Into::into).into();
+    words.push(seed.to_string().into());
+    if let Some(threads) = threads {
+        words.extend(["--threads".into(), threads.to_string().into()]);
+    }
+    if let Some(map) = importance {
+        words.extend(["--importance".into(), map.into()]);
+    }
+    let command = Args::augment_args(clap::Command::new("render"));
+    let matches = command.try_get_matches_from(words).map_err(Failure::Usage)?;
+    let args = Args { scene: scene.clone(), ..Args::from_arg_matches(&matches).map_err(Failure::Usage)? };
+    prepare(&args, options)
+}
+
+impl Prepared {
+    /// The scene.
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Renders, with a bar on standard error; `show` gets the picture after every stage.
+    pub(crate) fn render(&self, clock: &MonotonicClock, show: Option<Show<'_>>) -> Result<Rendering, Failure> {
+        let progress = Progress::new(clock);
+        let report = |fraction| progress.set(fraction);
+        let smoothed = &self.request.filter;
+        let (rendering, planes) = self.with_renderer(clock, |renderer| {
+            let renderer = renderer.with_progress(&report);
+            match show {
+                Some(show) => renderer.render_stages(show).map(|rendering| (rendering, Vec::new())),
+                None if smoothed.is_empty() => renderer.render().map(|rendering| (rendering, Vec::new())),
+                None => renderer.render_smoothed(smoothed.iter().copied().collect()),
+            }
+        })?;
+        progress.done();
+        for plane in planes {
+            let percent = [plane.noise_before, plane.noise_after].map(|noise| 100.0 * noise);
+            console::say(
+                "note",
+                &format!(
+                    "{} is smoothed: noise {:.2} % of its mean, {:.2} % afterwards, beside what smoothing moved",
+                    plane.component, percent[0], percent[1]
+                ),
+            );
+        }
+        for span in &rendering.stopped {
+            let text = crex::Warning { message: "`*` was stopped after a million runs".to_owned(), span: *span };
+            console::say("warning", &text.render(self.request.program.text()));
+        }
+        Ok(rendering)
+    }
+
+    /// Does something with a renderer of what is asked for.
+    pub(crate) fn with_renderer<T>(
+        &self,
+        clock: &MonotonicClock,
+        work: impl FnOnce(Renderer<'_>) -> Result<T, RenderError>,
+    ) -> Result<T, Failure> {
+        let aggregate = self.scene.aggregate();
+        let refused = |error: RenderError| match error {
+            RenderError::Threads { .. } => Failure::Cannot(error.to_string()),
+            _ => Failure::input(error),
+        };
+        let Request { program, view, settings, .. } = &self.request;
+        let mut renderer =
+            Renderer::new(&self.scene, &aggregate, view, program, clock, settings.clone()).map_err(refused)?;
+        if let Some(map) = &self.request.importance {
+            renderer = renderer.with_importance(map.values()).map_err(refused)?;
+        }
+        if let Some(thresholds) = &self.request.thresholds {
+            renderer = renderer.with_thresholds(thresholds).map_err(refused)?;
+        }
+        if self.request.continuous {
+            renderer = renderer.with_continuous_importance();
+        }
+        work(renderer).map_err(refused)
+    }
+
+    /// What the scene was made from.
+    pub(crate) fn scene_hash(&self) -> String {
+        timed::scene_hash(&self.scene_inputs)
+    }
+
+    /// The components that the scene can spawn.
+    pub(crate) fn components(&self) -> ComponentSet {
+        self.scene.components(self.request.settings.limits.glossy_threshold)
+    }
+}
+
+fn request(args: &Args, options: &RadianceOptions, program: Program, inputs: Vec<Input>) -> Result<Request, Failure> {
+    if !options.view_given {
+        console::say(
+            "warning",
+            "no view is given (-vf FILE, or -vp, -vd and so on): rpict's default looks north from the origin",
+        );
+    }
+    let view = View::new(options.view).map_err(Failure::input)?;
+    let [width, height] = options.size.map(|pixels| pixels as usize);
+    let (width, height) = view.resolution(width, height, options.pixel_aspect);
+    let threads = args.threads.or(options.threads).map(|threads| threads as usize);
+    let settings = Settings {
+        width,
+        height,
+        samples: args.spp,
+        seed: args.seed,
+        jitter: options.pixel_jitter,
+        limits: Limits {
+            reflections: options.reflections,
+            least_weight: options.least_weight,
+            diffuse: options.diffuse,
+            glossy_threshold: options.glossy_threshold,
+            diffuse_rays: options.diffuse_rays,
+            glossy_rays: options.glossy_rays,
+        },
+        ambient: options.ambient.into(),
+        lights_visible: options.lights_visible,
+        layers: match args.layers {
+            LayerChoice::Last => Layers::Last,
+            LayerChoice::First => Layers::First,
+        },
+        threads,
+    };
+    let mut inputs = inputs;
+    let importance = match &args.importance {
+        None => None,
+        Some(path) => {
+            let (map, input) = importance(path, width, height)?;
+            inputs.push(input);
+            Some(map)
+        }
+    };
+    if !args.filter.is_empty() && matches!(args.layers, LayerChoice::First) {
+        return Err(Failure::input("--filter smooths what the last event brought: it cannot go with --layers first"));
+    }
+    let mut words = format!("--spp {} --seed {}", args.spp, args.seed);
+    if matches!(args.layers, LayerChoice::First) {
+        words.push_str(" --layers first");
+    }
+    if let Some(thresholds) = &args.thresholds {
+        let list: Vec<String> = thresholds.iter().map(f32::to_string).collect();
+        words.push_str(&format!(" --thresholds {}", list.join(",")));
+    }
+    if !args.filter.is_empty() {
+        let letters: Vec<String> = args.filter.iter().map(ToString::to_string).collect();
+        words.push_str(&format!(" --filter {}", letters.join(",")));
+    }
+    if args.continuous {
+        words.push_str(" --continuous");
+    }
+    if !options.spelled.is_empty() {
+        words.push_str(&format!(" {}", options.spelled));
+    }
+    let provenance = Provenance {
+        software: format!("crex {}", env!("CARGO_PKG_VERSION")),
+        crex: Some(args.crex.clone()),
+        view: Some(options.view.to_string()),
+        options: Some(words),
+        inputs,
+        exposure: None,
+    };
+    let (thresholds, continuous) = (args.thresholds.clone(), args.continuous);
+    let filter = args.filter.clone();
+    Ok(Request { program, view, settings, importance, thresholds, continuous, filter, provenance })
+}
+
+/// Reads an importance map and brings it to the picture's size, with a word on how.
+fn importance(path: &Path, width: usize, height: usize) -> Result<(ImportanceMap, Input), Failure> {
+    let bytes = std::fs::read(path).unwrap_or_default();
+    let map = grey::read(path)?;
+    let (found_width, found_height) = (map.width(), map.height());
+    let map = ImportanceMap::new(map).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+    let map = if (found_width, found_height) == (width, height) {
+        map
+    } else {
+        console::say(
+            "note",
+            &format!(
+                "{} has {found_width} x {found_height} pixels, the picture {width} x {height}: each pixel takes the largest \
+                 value of the map's pixels that it overlaps",
+                path.display()
+            ),
+        );
+        map.resized(width, height)
+    };
+    let name = scene_files::base_name(&path.to_string_lossy());
+    Ok((map, Input { name, sha256: Sha256::of(&bytes).to_string() }))
+}
