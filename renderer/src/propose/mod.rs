@@ -165,6 +165,3 @@ pub fn modulate(profile: &mut Profile<'_>, step: &Step, tolerance_jod: f64) -> R
     let thresholds = crex.chars().filter(inside).filter_map(threshold).collect();
     Ok(Modulated { crex, thresholds })
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,11 +1,16 @@
+//! Proposals for small rooms: order, choices, thresholds.
+
+#![allow(clippy::unwrap_used)] // helpers of tests are not tests to the lint
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::*;
-use crate::picture::display::Display;
-use crate::rad::{self, MemoryFiles, Source, ViewSpec};
-use crate::render::Settings;
-use crate::scene::{Scene, View};
-use crate::schedule::Clock;
+use renderer::component::{Component, ComponentSet};
+use renderer::picture::display::Display;
+use renderer::propose::{Level, Modulated, Profile, Question, modulate, propose_from};
+use renderer::rad::{self, MemoryFiles, Source, ViewSpec};
+use renderer::render::Settings;
+use renderer::scene::{Scene, View};
+use renderer::schedule::Clock;
 
 /// A clock by which everything takes as long as everything else: a millisecond passes at each look.
 #[derive(Default)]
@@ -116,8 +121,8 @@ fn thresholds_fit_their_crex_and_rise_as_visibility_falls() {
         let strict = modulate(profile, &full, 0.05).unwrap();
         let lax = modulate(profile, &full, 1e3).unwrap();
         let members = |made: &Modulated| {
-            let program = crate::crex::Program::new(&crate::crex::parse(&made.crex).unwrap());
-            crate::schedule::Scheduler::new(&program, Some(&made.thresholds)).unwrap();
+            let program = renderer::crex::Program::new(&renderer::crex::parse(&made.crex).unwrap());
+            renderer::schedule::Scheduler::new(&program, Some(&made.thresholds)).unwrap();
         };
         members(&strict);
         members(&lax);
