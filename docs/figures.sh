@@ -36,9 +36,9 @@ figure_4() { # the corridor of the experiment: full solution, component-based qu
     local display; display=$(mktemp --suffix .toml)
     sed 's/1280/480/; s/1024/384/' docs/display.toml >"$display"
     crex importance "${corridor[@]}" -x 480 -y 384 --task "$items" -o "$map"
-    crex render "${corridor[@]}" "${size[@]}" --crex '(TRSGMD)*' -ad 4 -o "$out/figure4_hq.png"
+    crex render "${corridor[@]}" "${size[@]}" --crex '(TRSGMD)*' -ad 6 -o "$out/figure4_hq.png"
     crex render "${corridor[@]}" "${size[@]}" --crex 'T{RSGM}' --importance "$map" -o "$out/figure4_cbq.png"
-    crex render "${corridor[@]}" "${size[@]}" --crex '(TRSGM{D})*' -ad 4 --importance "$map" --thresholds 1 -o "$out/figure4_sel.png"
+    crex render "${corridor[@]}" "${size[@]}" --crex '(TRSGM{D})*' -ad 6 --importance "$map" --thresholds 1 -o "$out/figure4_sel.png"
     for quality in cbq sel; do
         crex compare "$out/figure4_hq.png" "$out/figure4_$quality.png" --display "$display" --map "$map" \
             --difference "$out/figure4_${quality}_differs.png"

@@ -40,10 +40,10 @@ row() {
 judge() {
     "$crex" importance "${scene[@]}" --task "$2" -o "$dir/map.png" 2>/dev/null
     local hq cbq sel again
-    hq=$(timed hq --crex '(TRSGMD)*' -ad 4 --seed 1)
+    hq=$(timed hq --crex '(TRSGMD)*' -ad 6 --seed 1)
     cbq=$(timed cbq --crex 'T{RSGM}' --importance "$dir/map.png" --seed 1)
-    sel=$(timed sel --crex '(TRSGM{D})*' -ad 4 --thresholds 1 --importance "$dir/map.png" --seed 1)
-    again=$(timed again --crex '(TRSGMD)*' -ad 4 --seed 2)
+    sel=$(timed sel --crex '(TRSGM{D})*' -ad 6 --thresholds 1 --importance "$dir/map.png" --seed 1)
+    again=$(timed again --crex '(TRSGMD)*' -ad 6 --seed 2)
     row "$1" hq "$hq" "$hq"
     row "$1" cbq "$cbq" "$hq"
     row "$1" sel "$sel" "$hq"
