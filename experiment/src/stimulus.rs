@@ -55,7 +55,7 @@ impl<'a> Pictures<'a> {
     /// Reads and checks every picture that the study shows and hands each to `with`.
     ///
     /// # Errors
-    /// If one is missing, altered, of another size than the study's display, or not 8 bits a channel without
+    /// If one is missing, altered, rendered for other words than the study file's, of another size than the study's display, or not 8 bits a channel without
     /// transparency: all of them are named.
     pub fn each(&self, mut with: impl FnMut(Picture)) -> Result<()> {
         let mut wrong = Vec::new();
@@ -81,6 +81,14 @@ impl<'a> Pictures<'a> {
                 "{folder}: the manifest has no picture `{id}`; render it with `cargo stimuli {folder}`"
             ))
         })?;
+        // What is on disk may be older than the study file: it would be shown as what it is not.
+        if self.study.request(stimulus).as_ref() != Some(&record.request) {
+            let id = stimulus.id();
+            return Err(Error::Input(format!(
+                "{folder}: the picture `{id}` was rendered for other words than the study file's; render it again with \
+                 `cargo stimuli {folder}`"
+            )));
+        }
         let path = self.study.folder.join(&record.file);
         let bytes = read_file(&path)?;
         check_digest(&path, &bytes, record)?;

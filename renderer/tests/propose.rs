@@ -1,6 +1,6 @@
 //! Proposals for small rooms: order, choices, thresholds.
 
-#![allow(clippy::unwrap_used)] // helpers of tests are not tests to the lint
+#![allow(clippy::unwrap_used, reason = "a test that cannot start has failed")]
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

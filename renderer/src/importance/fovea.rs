@@ -47,8 +47,10 @@ impl Falloff {
             Self::Cortical => 3.67 / (3.67 + e),
             Self::GeislerPerry => {
                 const E2_DEG: f64 = 2.3;
-                let cut_off = E2_DEG * 64.0_f64.ln() / (0.106 * (e + E2_DEG));
-                (cut_off / (px_per_deg / 2.0)).min(1.0)
+                let cut_off = |e: f64| E2_DEG * 64.0_f64.ln() / (0.106 * (e + E2_DEG));
+                // On a display finer than the fovea the fovea is the limit.
+                let most = (px_per_deg / 2.0).min(cut_off(0.0));
+                (cut_off(e) / most).min(1.0)
             }
         }
     }

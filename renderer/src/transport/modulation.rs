@@ -31,6 +31,8 @@ pub enum Rule {
         /// N: samples of each pixel.
         samples: u32,
     },
+    /// Every member of `{ }` runs all samples wherever the map is above 0: the picture that [`Self::Continuous`] expects.
+    Expected,
 }
 
 /// What continuous importance has decided of a path.

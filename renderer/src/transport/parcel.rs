@@ -238,7 +238,7 @@ fn reaches(tracer: &Tracer<'_>, block: &Block, record: &SpawnRecord, threshold: 
     let (x, y) = place(block, record.path.pixel as usize);
     match modulation.rule {
         Rule::Thresholds => *modulation.map.at(x, y) >= threshold,
-        Rule::Continuous { .. } => *modulation.map.at(x, y) > 0.0,
+        Rule::Continuous { .. } | Rule::Expected => *modulation.map.at(x, y) > 0.0,
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use renderer::component::{Component, PerComponent};
 use renderer::crex::{self, Program};
 use renderer::film::Film;
+use renderer::raster::Raster;
 use renderer::render::{Renderer, RoundRecord, Settings, TimedRecord, TimedRendering};
 use renderer::schedule::{Budget, Clock, ProfileCache, RayKind};
 
@@ -37,6 +38,24 @@ fn nothing_known() -> ProfileCache {
 
 /// Bounds from none at all to enough for several passes of nine tiles.
 const BOUNDS: [f64; 12] = [0.0, 0.01, 0.05, 0.2, 0.6, 1.0, 1.6, 2.5, 4.0, 7.0, 12.0, 20.0];
+
+/// Refinement runs single samples, so it cannot choose among them; what it may not do is run where nothing matters.
+#[test]
+fn continuous_importance_leaves_pixels_of_none_alone() {
+    let room = room();
+    let map = Raster::from_values(40, 40, (0..1600).map(|i| f32::from(u8::from(i % 40 >= 20))).collect()).unwrap();
+    let program = Program::new(&crex::parse("{D}").unwrap());
+    let clock = Ticking::default();
+    let renderer = Renderer::new(&room.scene, &room.aggregate, &room.view, &program, &clock, settings(2)).unwrap();
+    let renderer = renderer.with_importance(&map).unwrap().with_continuous_importance();
+    let timed = renderer.render_within(Budget::new(&clock, 20.0, 0.0), &mut nothing_known()).unwrap();
+    assert!(timed.refined_samples > 0.0);
+    let layer = timed.rendering.film.layer(Component::Diffuse).unwrap();
+    for row in layer.values().chunks_exact(40) {
+        assert!(row[..20].iter().all(|pixel| *pixel == glam::Vec3::ZERO));
+        assert!(row[20..].iter().any(|pixel| pixel.max_element() > 0.0));
+    }
+}
 
 #[test]
 fn every_bound_gives_a_whole_picture() {

@@ -76,7 +76,10 @@ proptest! {
     fn ones_change_nothing_and_zeros_leave_nothing(cuts in prop::collection::vec(0.01_f32..=1.0, 5)) {
         let room = room();
         let of = |value: f32| rendered(&room, "T{RSGMD}", &Raster::filled(EDGE, EDGE, value), &cuts);
-        prop_assert_eq!(of(1.0).film, room.render("T{RSGMD}", settings()).film);
+        let all = of(1.0);
+        prop_assert_eq!(&all.film, &room.render("T{RSGMD}", settings()).film);
+        let traced = rays(&all);
+        prop_assert!(Component::ALL.into_iter().all(|component| traced[component] > 0));
         let none = of(0.0);
         prop_assert_eq!(none.film.beauty(), room.render("T", settings()).film.beauty());
         let inside = rays(&none);

@@ -71,6 +71,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if !(args.exposure.is_finite() && args.exposure > 0.0) {
         return Err(Failure::input(format!("--exposure {} must be a positive number", args.exposure)));
     }
+    if args.difference.as_ref().is_some_and(|path| [&args.reference, &args.picture].contains(&path)) {
+        return Err(Failure::input("--difference would overwrite a picture that is compared: choose another name"));
+    }
     let display = args.display.as_deref().map(read_display).transpose()?;
     let (reference, picture) = (picture::read(&args.reference)?, picture::read(&args.picture)?);
     let difference = compare::difference(&reference, &picture).map_err(Failure::input)?;

@@ -142,12 +142,11 @@ fn check(args: &Args) -> Result<(), Failure> {
     if args.scenes.is_empty() && (args.of.is_none() || !args.task.is_empty()) {
         return Err(Failure::input("give the scene; only `--saliency --of PICTURE` without --task needs none"));
     }
-    for (name, value, least) in
-        [("--fovea", args.fovea, 0.0), ("--px-per-deg", args.px_per_deg.unwrap_or(1.0), f64::MIN_POSITIVE)]
-    {
-        if !(least..1e6).contains(&value) {
-            return Err(Failure::input(format!("{name} {value} must be a number of at least {least}")));
-        }
+    if !(0.0..1e6).contains(&args.fovea) {
+        return Err(Failure::input(format!("--fovea {} must be degrees, from 0 to below 1000000", args.fovea)));
+    }
+    if let Some(given) = args.px_per_deg.filter(|given| !(f64::MIN_POSITIVE..1e6).contains(given)) {
+        return Err(Failure::input(format!("--px-per-deg {given} must be above 0 and below 1000000")));
     }
     if !(args.exposure.is_finite() && args.exposure > 0.0) {
         return Err(Failure::input(format!("--exposure {} must be a positive number", args.exposure)));
@@ -164,7 +163,14 @@ fn check(args: &Args) -> Result<(), Failure> {
         let advice = "says no picture format: end its name in .png, .exr or .hdr";
         return Err(Failure::input(format!("--overlay {}: {advice}", path.display())));
     }
+    if args.overlay.as_ref() == Some(&args.output) {
+        return Err(Failure::input("-o and --overlay name the same file"));
+    }
     for path in std::iter::once(&args.output).chain(&args.overlay) {
+        if args.of.as_ref() == Some(path) {
+            let advice = "is read, and would be overwritten: choose another name";
+            return Err(Failure::input(format!("{}: {advice}", path.display())));
+        }
         output::check_folder(path)?;
     }
     Ok(())

@@ -239,7 +239,7 @@ fn write_ran(path: &Path, request: &Request, rendering: &Rendering) -> Result<()
 
 fn write_stats(args: &Args, prepared: &Prepared, stats: Stats, clock: &MonotonicClock) -> Result<(), Failure> {
     let Some(file) = &args.stats else { return Ok(()) };
-    let stats = stats.with_scene(prepared.scene_hash()).with_wall_s(clock.now_s());
+    let stats = stats.with_scene(prepared.scene_hash(), prepared.request.modulation()).with_wall_s(clock.now_s());
     let text = serde_json::to_string_pretty(&stats).map_err(|error| Failure::Cannot(error.to_string()))?;
     AtomicFile::write_all(file, format!("{text}\n").as_bytes())
         .map_err(|error| Failure::Cannot(format!("{}: cannot be written: {error}", file.display())))

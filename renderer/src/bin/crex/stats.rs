@@ -32,6 +32,8 @@ pub(crate) struct Stats {
     left: Counts,
     /// A hash of what the scene was made from.
     scene: String,
+    /// What `{ }` heeded: the hash of the map, and by which rule.
+    modulation: String,
     /// What a clock decided, under a time limit.
     timed: Option<TimedStats>,
     stages: Vec<StageStats>,
@@ -84,14 +86,15 @@ impl Stats {
             deadline_s: None,
             left: counts(&rendering.left),
             scene: String::new(),
+            modulation: String::new(),
             timed: None,
             stages: std::iter::once(primary).chain(rows).collect(),
         }
     }
 
-    /// The same of a scene.
-    pub(crate) fn with_scene(self, scene: String) -> Self {
-        Self { scene, ..self }
+    /// The same of a scene, and of what `{ }` heeded.
+    pub(crate) fn with_scene(self, scene: String, modulation: String) -> Self {
+        Self { scene, modulation, ..self }
     }
 
     /// The same of a run under a time limit, in seconds, or of one repeated.

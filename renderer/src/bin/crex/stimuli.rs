@@ -74,7 +74,9 @@ pub(crate) fn run(args: &Args, clock: &MonotonicClock) -> Result<(), Failure> {
             other => other,
         })?;
         console::say("note", &format!("{id}: {:.1} s, {:.2} cd/m2", timing.seconds, record.mean_luminance_cd_m2));
-        manifest.study.clone_from(&study.id);
+        if manifest.study.is_empty() {
+            manifest.study.clone_from(&study.id);
+        }
         manifest.pictures.insert(id.clone(), record);
         manifest.timings.insert(id, timing);
         forget_strangers(&study, &mut manifest);
@@ -257,8 +259,10 @@ fn mean_luminance_cd_m2(rendering: &Rendering) -> f64 {
 /// Drops what the study no longer shows.
 fn forget_strangers(study: &Study, manifest: &mut Manifest) {
     let shown: Vec<String> = study.stimuli().iter().map(Stimulus::id).collect();
-    manifest.pictures.retain(|id, _| shown.contains(id));
-    manifest.timings.retain(|id, _| shown.contains(id));
+    // Studies that extend one another share a folder: what another shows is there, and stays.
+    manifest.pictures.retain(|id, record| shown.contains(id) || study.folder.join(&record.file).exists());
+    let Manifest { pictures, timings, .. } = manifest;
+    timings.retain(|id, _| pictures.contains_key(id));
 }
 
 fn failure(error: ::stimuli::Error) -> Failure {

@@ -273,6 +273,8 @@ impl Limit<'_> {
 struct Recorded {
     crex: String,
     scene: String,
+    #[serde(default)]
+    modulation: String,
     width: usize,
     height: usize,
     spp: u32,
@@ -296,6 +298,7 @@ pub(crate) fn replay(
     let here = [
         ("crex", prepared.request.program.text().to_owned(), recorded.crex.clone()),
         ("scene", prepared.scene_hash(), recorded.scene.clone()),
+        ("importance (map; thresholds)", prepared.request.modulation(), recorded.modulation.clone()),
         (
             "size",
             format!("{} x {}", settings.width, settings.height),

@@ -119,7 +119,7 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
     let most = args.spp.iter().copied().max().unwrap_or(1);
     let reference = Reference {
         crex: proposal.full().crex.clone(),
-        spp: args.reference_spp.unwrap_or(4 * most),
+        spp: args.reference_spp.unwrap_or_else(|| most.saturating_mul(4)),
         seed: seed.wrapping_add(1),
     };
     let curve = Curve::new(bench.measure(&candidates, &args.spp, &reference)?);

@@ -146,12 +146,15 @@ impl Renderer<'_> {
         TimedRendering { rendering, record, refined, refined_samples }
     }
 
-    /// What traces single samples: continuous importance, which chooses among many, is left out, since the expected picture is
-    /// the same.
+    /// What traces single samples: continuous importance, which chooses among many, becomes all samples wherever the map is
+    /// above 0, since that is the picture it expects.
     fn refining(&self) -> Tracer<'_> {
-        let by_thresholds = |modulation: &Modulation<'_>| modulation.rule == Rule::Thresholds;
         let tracer = self.tracer();
-        Tracer { modulation: tracer.modulation.filter(by_thresholds), ..tracer }
+        let modulation = tracer.modulation.map(|modulation| match modulation.rule {
+            Rule::Thresholds => modulation,
+            Rule::Continuous { .. } | Rule::Expected => Modulation { rule: Rule::Expected, ..modulation },
+        });
+        Tracer { modulation, ..tracer }
     }
 
     /// Samples of a pixel whose rays may wait at once.

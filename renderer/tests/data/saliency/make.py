@@ -1,6 +1,6 @@
 """Makes maps.csv: saliency of twelve synthetic pictures by a transcription of Itti, Koch and Niebur (1998) that shares
 nothing with the Rust code but the published formulas and the choices that they leave open (stated there): binomial
-pyramid, Gabor of wavelength 4 px and deviation 2 px, rectified double opponency, bilinear reading. float64, full
+pyramid, Gabor of wavelength 4 px and deviation 2 px, double opponency with the sign of the text, not of equation 2, bilinear reading. float64, full
 two-dimensional convolutions.
 
 usage: make.py   (numpy 2, scipy 1)

@@ -37,6 +37,18 @@ pub(crate) struct Request {
     pub(crate) provenance: Provenance,
 }
 
+impl Request {
+    /// What `{ }` heeds, in words that are equal just if it is.
+    pub(crate) fn modulation(&self) -> String {
+        let map = self.importance.as_ref().and(self.provenance.inputs.last());
+        let map = map.map_or("no map", |input| input.sha256.as_str());
+        let thresholds: Vec<String> = self.thresholds.iter().flatten().map(f32::to_string).collect();
+        let rule =
+            if self.continuous { "continuous".to_owned() } else { format!("thresholds {}", thresholds.join(",")) };
+        format!("{map}; {rule}")
+    }
+}
+
 /// A scene and what is asked of it, ready to be rendered.
 pub(crate) struct Prepared {
     pub(crate) request: Request,

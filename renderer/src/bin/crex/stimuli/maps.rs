@@ -43,6 +43,15 @@ pub(super) fn make(
     for map in maps.iter().filter(|map| force || map.status != PictureStatus::Fresh) {
         console::say("note", &format!("{}: {}", map.file.display(), word(&map.status)));
         let path = study.folder.join(&map.file);
+        // Only what was made here is ours to overwrite: a map may have been drawn by hand.
+        let written = manifest.maps.get(&map.file).map(|record| record.sha256);
+        if !force && path.exists() && Sha256::of_file(&path).ok() != written {
+            return Err(Failure::input(format!(
+                "{}: this map was not made by `crex stimuli`, or was altered since: rename it, take [importance] out of the \
+                 study file to use it as it is, or say --force",
+                path.display()
+            )));
+        }
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)
                 .map_err(|error| Failure::Cannot(format!("{}: {error}", folder.display())))?;
@@ -58,7 +67,9 @@ pub(super) fn make(
             inputs: inputs(study, [&map.request.view], &made.files)?,
             version: version(),
         };
-        manifest.study.clone_from(&study.id);
+        if manifest.study.is_empty() {
+            manifest.study.clone_from(&study.id);
+        }
         manifest.maps.insert(map.file.clone(), record);
         manifest.save(&study.folder).map_err(failure)?;
     }
