@@ -1,4 +1,4 @@
-//! Data as a BIDS dataset (Brain Imaging Data Structure, https://bids-specification.readthedocs.io): a table of trials and
+//! Data as a BIDS dataset (Brain Imaging Data Structure, <https://bids-specification.readthedocs.io>): a table of trials and
 //! one of onsets for each participant, with the meaning of every column beside it.
 //!
 //! Nothing is added and nothing judged: rows are the log's, an empty field is `n/a`. A person who withdrew is not in it.

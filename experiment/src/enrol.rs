@@ -213,7 +213,7 @@ impl DataFolder {
         self.folder.join("sessions").join(participant)
     }
 
-    /// Writes, syncs and removes a file of [`ROOM`] bytes, so that a full disk or a folder that cannot be written is known
+    /// Writes, syncs and removes a file of `ROOM` bytes, so that a full disk or a folder that cannot be written is known
     /// before a participant sits down.
     ///
     /// # Errors
