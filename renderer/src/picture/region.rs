@@ -100,6 +100,11 @@ mod tests {
         0.2 + 0.02 * ((x * 7 + y * 13) % 5) as f32
     }
 
+    /// The texture with noise of mean 0: a shift of the whole would be no contrast in it, and an edge around a part.
+    fn noisy(x: usize, y: usize) -> f32 {
+        texture(x, y) + 0.06 * (((x * 31 + y * 17) % 3) as f32 - 1.0)
+    }
+
     fn region(inside: impl Fn(usize, usize) -> bool) -> Region {
         let values = (0..192 * 128).map(|i| f32::from(u8::from(inside(i % 192, i / 192)))).collect();
         Region::at_least(&Raster::from_values(192, 128, values).unwrap(), 1.0).unwrap()
@@ -107,8 +112,7 @@ mod tests {
 
     #[test]
     fn the_whole_picture_is_a_region_like_any_other() {
-        let (reference, noisy) =
-            (picture(texture), picture(|x, y| texture(x, y) + 0.03 * ((x * 31 + y * 17) % 3) as f32));
+        let (reference, noisy) = (picture(texture), picture(noisy));
         let seen = region(|_, _| true).seen(&reference, &noisy, &DISPLAY, 1.0).unwrap();
         let whole = compare::jod(&reference, &noisy, &DISPLAY, 1.0).unwrap().jod;
         assert!((seen.jod - whole).abs() < 1e-5 && whole < 9.7, "{} {whole}", seen.jod);
@@ -119,8 +123,7 @@ mod tests {
     /// The same difference everywhere: any part of it is as visible as the whole, but for what borders add or take.
     #[test]
     fn a_part_of_an_even_difference_is_as_visible_as_the_whole() {
-        let (reference, noisy) =
-            (picture(texture), picture(|x, y| texture(x, y) + 0.03 * ((x * 31 + y * 17) % 3) as f32));
+        let (reference, noisy) = (picture(texture), picture(noisy));
         let whole = 10.0 - compare::jod(&reference, &noisy, &DISPLAY, 1.0).unwrap().jod;
         for (name, part) in [
             ("half", region(|x, _| x < 96)),
