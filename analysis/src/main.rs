@@ -16,6 +16,13 @@ use analysis::tally::ArmTally;
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+/// A line on standard error. Where nobody listens there is nowhere to complain, and nothing ends for that.
+macro_rules! say {
+    ($($words:tt)*) => {{
+        let _ = writeln!(std::io::stderr(), $($words)*);
+    }};
+}
+
 /// Computes what session logs show, and writes it as HTML, Markdown, JSON or CSV.
 #[derive(Parser)]
 #[command(name = "crex-report", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -148,11 +155,11 @@ fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Input(message)) => {
-            eprintln!("crex-report: {message}");
+            say!("crex-report: {message}");
             ExitCode::from(2)
         }
         Err(Failure::Machine(message)) => {
-            eprintln!("crex-report: {message}");
+            say!("crex-report: {message}");
             ExitCode::from(1)
         }
     }

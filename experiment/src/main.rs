@@ -21,6 +21,13 @@ use experiment::stimulus::{Picture, Pictures};
 use experiment::withdraw::withdraw;
 use stimuli::Study;
 
+/// A line on standard error. Where nobody listens there is nowhere to complain, and nothing ends for that.
+macro_rules! say {
+    ($($words:tt)*) => {{
+        let _ = writeln!(std::io::stderr(), $($words)*);
+    }};
+}
+
 /// The study that is run when none is named.
 const SHIPPED: &str = "stimuli/corridor";
 
@@ -125,7 +132,7 @@ fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("crex-session: {error}");
+            say!("crex-session: {error}");
             ExitCode::from(if error.is_input() { 2 } else { 1 })
         }
     }
@@ -145,7 +152,7 @@ fn run(arguments: &Arguments) -> Result<()> {
     if let Some(to) = &arguments.bids {
         let data = DataFolder::reopen(&data_folder(&study, arguments), &study, Pictures::of(&study)?.hash()?)?;
         let participants = bids::export(&data, &study, to)?;
-        eprintln!("{participants} participants in {}", to.display());
+        say!("{participants} participants in {}", to.display());
         return Ok(());
     }
     if arguments.self_test {
@@ -158,7 +165,7 @@ fn run(arguments: &Arguments) -> Result<()> {
         return Err(Error::Machine(NO_DISPLAY_FOUND.to_owned()));
     }
     let observers = study.arms.iter().map(|arm| arm.n).sum();
-    eprintln!(
+    say!(
         "There is no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no session can be shown.\n\
          Instead {observers} simulated observers rehearse \"{}\" through the same session machine.",
         study.title
@@ -196,12 +203,12 @@ fn session(study: &Study, arguments: &Arguments) -> Result<()> {
     let folder = data_folder(study, arguments);
     let data = DataFolder::open(&folder, study, pictures.hash()?, Kind::Real)?;
     data.check_room()?;
-    eprintln!("Plan {}, {} slots.", data.plan().hash(), data.plan().slots.len());
+    say!("Plan {}, {} slots.", data.plan().hash(), data.plan().slots.len());
     match app::run(Launch { pictures: decoded, ..launch(study, Some(&data), arguments) })? {
         Exit::Ended(outcome) => {
-            eprintln!("The session has ended ({}); its data are in {}.", outcome.word(), folder.display());
+            say!("The session has ended ({}); its data are in {}.", outcome.word(), folder.display());
         }
-        _ => eprintln!("No session was begun."),
+        _ => say!("No session was begun."),
     }
     Ok(())
 }
@@ -256,7 +263,7 @@ fn erase(study: &Study, participant: &str, arguments: &Arguments) -> Result<()> 
     let done = withdraw(&data, participant)?;
     let (folder, files) = (done.folder.display(), done.files);
     let again = if done.again { " They had withdrawn before." } else { "" };
-    eprintln!(
+    say!(
         "{files} files of {participant} are erased; a dated note is in {folder}.{again} Reports, exports and backups made \
          before still hold the answers: make or clear them again."
     );
@@ -276,7 +283,7 @@ fn simulate(study: &Study, observers: u32, arguments: &Arguments) -> Result<()> 
     let codes: Vec<String> = (1..=observers).map(|number| format!("sim-{number:05}")).collect();
     let decoded = decode(&pictures)?;
     let data = DataFolder::open(&folder, study, pictures.hash()?, kind)?;
-    eprintln!("Simulated: no person answers here. Data go to {}.", folder.display());
+    say!("Simulated: no person answers here. Data go to {}.", folder.display());
     if arguments.window {
         let bots = codes.iter().map(|code| Bot::new(code.clone(), observer(code))).collect();
         let launch = launch(study, Some(&data), arguments);
@@ -317,18 +324,18 @@ fn rehearse_one(
     let start = if again { Conductor::resume } else { Conductor::begin };
     let begun = start(study, data, participant, rehearse::NO_DISPLAY)?;
     let mut conductor = begun.conductor;
-    begun.notes.iter().for_each(|note| eprintln!("{note}"));
+    begun.notes.iter().for_each(|note| say!("{note}"));
     let mut time = arguments.speed.map_or(Time::Jumps { now_s: 0.0 }, |speed| Time::Runs(Clock::new(speed)));
     time.start_at(begun.since_start_s);
     let mut told = None;
     let outcome = rehearse::run(&mut conductor, &mut observer, &mut time, &mut |conductor| {
         if arguments.speed.is_some() && conductor.last_row() != told {
             told = conductor.last_row();
-            eprintln!("{participant}: trial {} saved", told.unwrap_or_default());
+            say!("{participant}: trial {} saved", told.unwrap_or_default());
         }
     })?;
     if outcome != Outcome::Completed || arguments.simulate.unwrap_or_default() <= 64 {
-        eprintln!("{participant}: {}", outcome.word());
+        say!("{participant}: {}", outcome.word());
     }
     Ok(())
 }
@@ -344,7 +351,7 @@ fn write_report(report: &Report, folder: &Path, json: bool) -> Result<()> {
             path: path.clone(),
             source,
         })?;
-        eprintln!("{}", path.display());
+        say!("{}", path.display());
     }
     print(if json { &as_json } else { &markdown })
 }

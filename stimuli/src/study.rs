@@ -98,7 +98,13 @@ impl Study {
     pub fn parse(text: &str, file: &Path) -> Result<Self> {
         let study: Self = toml::from_str(text).map_err(|error| {
             let byte = error.span().map_or(0, |span| span.start);
-            Error::Wrong(vec![Mistake::at(file, text, byte, error.message(), "See the study file's page in the docs.")])
+            Error::Wrong(vec![Mistake::at(
+                file,
+                text,
+                byte,
+                error.message(),
+                "stimuli/README.md says what a study file holds.",
+            )])
         })?;
         let found = validate::problems(&study);
         if found.is_empty() {

@@ -149,7 +149,7 @@ fn words(report: &Report, reference: &Picture, display: Option<&Display>) -> Str
     let Report { difference, flip, jod, region, width, height } = report;
     let unit = match reference.quantity {
         Quantity::Radiance => "W/(sr m2)",
-        Quantity::Display => "of the display's white",
+        Quantity::Display => "parts of the display's white",
     };
     let number =
         |value: Option<f64>| value.map_or("none: the reference is black".to_owned(), |value| format!("{value:.6}"));

@@ -98,7 +98,10 @@ fn report(prepared: &Prepared, estimate: &Estimate, json: bool) -> Result<(), Fa
         endless: estimate.endless,
     };
     if estimate.endless {
-        console::say("warning", "by what is known the crex would never run out of rays: the estimate was cut off");
+        console::say(
+            "warning",
+            "by what is known the crex would never run out of rays: the numbers mean nothing (docs/time.md)",
+        );
     }
     for (component, _) in estimate.unknown.iter().filter(|(_, unknown)| **unknown) {
         console::say("warning", &format!("nothing is known of {component}: its rays are not in the seconds"));
@@ -106,8 +109,9 @@ fn report(prepared: &Prepared, estimate: &Estimate, json: bool) -> Result<(), Fa
     if json {
         return console::print_json(&report);
     }
-    let line = |name: &str, row: &Row| format!("{name:<8}{:>14.0}{:>11.3}{:>11.3}\n", row.rays, row.mean_s, row.q95_s);
-    let mut text = format!("{:<8}{:>14}{:>11}{:>11}\n", "", "rays", "seconds", "95 % below");
+    let line =
+        |name: &str, row: &Row| format!("{name:<8} {:>14.0} {:>11.3} {:>11.3}\n", row.rays, row.mean_s, row.q95_s);
+    let mut text = format!("{:<8} {:>14} {:>11} {:>11}\n", "", "rays", "seconds", "95 % below");
     text.push_str(&line("primary", &report.primary));
     for (name, row) in &report.components {
         text.push_str(&line(name, row));
