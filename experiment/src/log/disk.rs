@@ -79,10 +79,8 @@ impl AppendFile {
 /// # Errors
 /// If the name is taken ([`ErrorKind::AlreadyExists`]), or it cannot be written.
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".part-{}-{}", std::process::id(), Utc::now().micros()));
-    let beside = path.with_file_name(name);
-    let linked = write_and_link(&beside, path, bytes);
+    let (file, beside) = create_beside(path).map_err(Error::io("create", path))?;
+    let linked = write_and_link(file, &beside, path, bytes);
     let removed = std::fs::remove_file(&beside);
     match linked {
         Err(error) if matches!(error.kind(), ErrorKind::Unsupported | ErrorKind::PermissionDenied) => {
@@ -96,8 +94,22 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
     sync_folder_of(path)
 }
 
-fn write_and_link(beside: &Path, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let mut file = OpenOptions::new().write(true).create_new(true).open(beside)?;
+/// A new file beside `path` that nobody else has: threads, and machines that share the folder, may ask in the same microsecond,
+/// and who takes another's would remove it under their hands.
+fn create_beside(path: &Path) -> std::io::Result<(File, PathBuf)> {
+    for n in 0_u32.. {
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(format!(".part-{}-{}-{n}", std::process::id(), Utc::now().micros()));
+        let beside = path.with_file_name(name);
+        match OpenOptions::new().write(true).create_new(true).open(&beside) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            created => return created.map(|file| (file, beside)),
+        }
+    }
+    Err(ErrorKind::AlreadyExists.into())
+}
+
+fn write_and_link(mut file: File, beside: &Path, path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     file.write_all(bytes)?;
     file.sync_all()?;
     std::fs::hard_link(beside, path)

@@ -184,3 +184,29 @@ fn a_new_file_takes_no_ones_place_and_leaves_nothing_beside_it() {
     assert_eq!(std::fs::read(&path).unwrap(), b"one");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
+
+/// Threads ask in the same microsecond now and then: one gets the name, the others hear that it is taken, and nothing of
+/// theirs is left beside it.
+#[test]
+fn of_many_who_write_one_name_one_does() {
+    let folder = tempfile::tempdir().unwrap();
+    for round in 0..50 {
+        let path = folder.path().join(format!("{round}.json"));
+        let wrote: Vec<bool> = std::thread::scope(|scope| {
+            let write = |i: u8| {
+                let path = &path;
+                scope.spawn(move || match write_new(path, &[b'0' + i; 100]) {
+                    Ok(()) => true,
+                    Err(Error::Io { source, .. }) if source.kind() == std::io::ErrorKind::AlreadyExists => false,
+                    Err(other) => panic!("{other}"),
+                })
+            };
+            let threads: Vec<_> = (0..8).map(write).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        assert_eq!(wrote.iter().filter(|&&wrote| wrote).count(), 1);
+        let winner = b'0' + wrote.iter().position(|&wrote| wrote).unwrap() as u8;
+        assert_eq!(std::fs::read(&path).unwrap(), [winner; 100]);
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 50);
+}
