@@ -99,7 +99,7 @@ impl Display {
     /// The screen of the 2005 experiment, a typical one of then: 17 inches, 1280 x 1024, 60 cm away, in a dim office (white
     /// 250 cd/m2, contrast 500, 50 lux of which 1 % is reflected).
     #[must_use]
-    pub fn of_the_paper() -> Self {
+    pub const fn of_the_paper() -> Self {
         Self {
             peak_cd_m2: 250.0,
             black_cd_m2: 0.5,

@@ -96,23 +96,12 @@ pub(super) fn jod(
 /// below) on the pictures that [`pictures`](tests::pictures) makes by the same whole-number formulas.
 #[cfg(test)]
 mod tests {
-    use super::super::display::Transfer;
     use super::super::{Provenance, Quantity};
     use super::*;
     use crate::color::srgb_decode;
     use crate::picture::compare;
 
-    const DISPLAY: Display = Display {
-        peak_cd_m2: 250.0,
-        black_cd_m2: 0.5,
-        ambient_lux: 50.0,
-        reflectivity: 0.01,
-        width_px: 1280,
-        height_px: 1024,
-        width_m: 0.3372,
-        distance_m: 0.6,
-        transfer: Transfer::Srgb,
-    };
+    const DISPLAY: Display = Display::of_the_paper();
 
     fn picture(code: impl Fn(i32, i32) -> [i32; 3]) -> Picture {
         let linear = |code: i32| srgb_decode(f64::from(code.clamp(0, 255)) / 255.0) as f32;

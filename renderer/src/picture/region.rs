@@ -74,21 +74,10 @@ impl Region {
 
 #[cfg(test)]
 mod tests {
-    use super::super::display::Transfer;
     use super::super::{Provenance, Quantity};
     use super::*;
 
-    const DISPLAY: Display = Display {
-        peak_cd_m2: 250.0,
-        black_cd_m2: 0.5,
-        ambient_lux: 50.0,
-        reflectivity: 0.01,
-        width_px: 1280,
-        height_px: 1024,
-        width_m: 0.3372,
-        distance_m: 0.6,
-        transfer: Transfer::Srgb,
-    };
+    const DISPLAY: Display = Display::of_the_paper();
 
     fn picture(value: impl Fn(usize, usize) -> f32) -> Picture {
         let values = (0..192 * 128).map(|i| [value(i % 192, i / 192); 3]).collect();

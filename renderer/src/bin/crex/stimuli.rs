@@ -15,7 +15,7 @@ use renderer::render::Rendering;
 use renderer::schedule::{Clock, MonotonicClock};
 
 use crate::console::{self, Failure};
-use crate::{Cli, options, output, render};
+use crate::{Cli, Command, options, output, render};
 
 /// What `crex stimuli` takes.
 #[derive(clap::Args, Clone, Debug)]
@@ -149,7 +149,9 @@ fn make(
     let begun_s = clock.now_s();
     let file = job.stimulus.file();
     let path = study.folder.join(&file);
-    let (args, radiance) = parsed(words(&job.request, &study.folder, &path, threads))?;
+    let (Command::Render(args), radiance) = parsed(words(&job.request, &study.folder, &path, threads))? else {
+        unreachable!("the words begin with `crex render`")
+    };
     let prepared = render::prepare(&args, &radiance)?;
     let settings = &prepared.request.settings;
     let (width, height) = (job.request.width_px as usize, job.request.height_px as usize);
@@ -213,14 +215,11 @@ fn words(request: &Request, folder: &Path, picture: &Path, threads: Option<u32>)
     words
 }
 
-/// The words of a `crex render`, read as the command line is.
-fn parsed(words: Vec<OsString>) -> Result<(render::Args, options::RadianceOptions), Failure> {
+/// Words of a command, read as the command line is.
+fn parsed(words: Vec<OsString>) -> Result<(Command, options::RadianceOptions), Failure> {
     let (words, radiance) = crate::radiance_options(words)?;
     let matches = Cli::command().try_get_matches_from(words).map_err(Failure::Usage)?;
-    match Cli::from_arg_matches(&matches).map_err(Failure::Usage)?.command {
-        crate::Command::Render(args) => Ok((*args, radiance)),
-        _ => unreachable!("the words begin with `crex render`"),
-    }
+    Ok((Cli::from_arg_matches(&matches).map_err(Failure::Usage)?.command, radiance))
 }
 
 /// Digests of all files that were read, by their paths from the study's folder: its `own` files, and those of the scene.

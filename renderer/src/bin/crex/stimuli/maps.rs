@@ -6,12 +6,11 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use ::stimuli::{Manifest, MapRecord, MapRequest, PictureStatus, Sha256, Study};
-use clap::{CommandFactory, FromArgMatches};
 use renderer::schedule::MonotonicClock;
 
-use super::{failure, inputs, version, word};
+use super::{failure, inputs, parsed, version, word};
 use crate::console::{self, Failure};
-use crate::{Cli, importance, options};
+use crate::{Command, importance};
 
 /// A map that a picture needs.
 pub(super) struct Map {
@@ -56,7 +55,9 @@ pub(super) fn make(
             std::fs::create_dir_all(folder)
                 .map_err(|error| Failure::Cannot(format!("{}: {error}", folder.display())))?;
         }
-        let (args, radiance) = parsed(words(&map.request, &study.folder, &path))?;
+        let (Command::Importance(args), radiance) = parsed(words(&map.request, &study.folder, &path))? else {
+            unreachable!("the words begin with `crex importance`")
+        };
         let made = importance::run(&args, &radiance, clock).map_err(|failure| match failure {
             Failure::Input(message) => Failure::Input(format!("{}: {message}", map.file.display())),
             other => other,
@@ -100,14 +101,4 @@ fn words(request: &MapRequest, folder: &Path, map: &Path) -> Vec<OsString> {
     }
     words.extend(["-o".into(), map.into()]);
     words
-}
-
-/// The words of a `crex importance`, read as the command line is.
-fn parsed(words: Vec<OsString>) -> Result<(importance::Args, options::RadianceOptions), Failure> {
-    let (words, radiance) = crate::radiance_options(words)?;
-    let matches = Cli::command().try_get_matches_from(words).map_err(Failure::Usage)?;
-    match Cli::from_arg_matches(&matches).map_err(Failure::Usage)?.command {
-        crate::Command::Importance(args) => Ok((*args, radiance)),
-        _ => unreachable!("the words begin with `crex importance`"),
-    }
 }
