@@ -7,7 +7,6 @@
 mod lab;
 mod support;
 
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -18,6 +17,7 @@ use image::RgbImage;
 use lab::Screen;
 use libtest_mimic::{Arguments, Failed, Trial};
 use stimuli::Study;
+use tempfile::TempDir;
 
 const NEEDED: [&str; 4] = ["Xvfb", "openbox", "xdotool", "setxkbmap"];
 
@@ -93,6 +93,14 @@ fn short(text: String) -> String {
         .replace("interval_s = 6.0", "interval_s = 1.5")
 }
 
+/// A folder that is removed when it is dropped, a study and a place for data in it, and a screen.
+fn laboratory(size: &str, alter: impl Fn(String) -> String) -> (TempDir, PathBuf, PathBuf, Screen) {
+    let folder = tempfile::tempdir().unwrap();
+    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
+    support::write_study(&study, alter);
+    (folder, study, data, Screen::new(size))
+}
+
 /// Confirms the set-up: one field after the other by Tab, then the box, then Enter.
 fn set_up(screen: &Screen, data: &Path) -> Result<(), Failed> {
     until("the set-up takes a confirmation", || {
@@ -107,10 +115,7 @@ fn set_up(screen: &Screen, data: &Path) -> Result<(), Failed> {
 }
 
 fn by_keyboard() -> Result<(), Failed> {
-    let folder = tempfile::tempdir().unwrap();
-    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
-    support::write_study(&study, short);
-    let screen = Screen::new("1024x768");
+    let (_folder, study, data, screen) = laboratory("1024x768", short);
     let mut program = screen.session(&study, &data);
     std::thread::sleep(Duration::from_secs(2));
     set_up(&screen, &data)?;
@@ -159,10 +164,8 @@ fn by_keyboard() -> Result<(), Failed> {
 
 /// During a picture: Escape, the keyboard taken by another window, the window manager's close, and a stop of 1.5 s.
 fn undisturbed() -> Result<(), Failed> {
-    let folder = tempfile::tempdir().unwrap();
-    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
-    support::write_study(&study, |text| short(text).replace("interval_s = 1.5", "interval_s = 4.0"));
-    let screen = Screen::new("1024x768");
+    let (_folder, study, data, screen) =
+        laboratory("1024x768", |text| short(text).replace("interval_s = 1.5", "interval_s = 4.0"));
     let mut program = screen.session(&study, &data);
     std::thread::sleep(Duration::from_secs(2));
     set_up(&screen, &data)?;
@@ -214,10 +217,8 @@ fn to_practice(screen: &Screen, data: &Path) -> Result<(), Failed> {
 
 /// Digits, Enter, space and backspace in great number while the pictures are shown: none of them is in the answers.
 fn early_keys() -> Result<(), Failed> {
-    let folder = tempfile::tempdir().unwrap();
-    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
-    support::write_study(&study, |text| short(text).replace("interval_s = 1.5", "interval_s = 4.0"));
-    let screen = Screen::new("1024x768");
+    let (_folder, study, data, screen) =
+        laboratory("1024x768", |text| short(text).replace("interval_s = 1.5", "interval_s = 4.0"));
     let mut program = screen.session(&study, &data);
     to_practice(&screen, &data)?;
     let start = Instant::now();
@@ -257,10 +258,7 @@ fn early_keys() -> Result<(), Failed> {
 
 /// Keys by their codes: 10 is the key that is 1 on an American keyboard, 11 the next, 13 the fourth, 36 Enter, 65 space.
 fn layouts() -> Result<(), Failed> {
-    let folder = tempfile::tempdir().unwrap();
-    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
-    support::write_study(&study, short);
-    let screen = Screen::new("1024x768");
+    let (_folder, study, data, screen) = laboratory("1024x768", short);
     let _program = screen.session(&study, &data);
     let layout = |name: &str| {
         assert!(Command::new("setxkbmap").env("DISPLAY", &screen.name).arg(name).status().unwrap().success());
@@ -386,12 +384,21 @@ fn rehearsal() -> Result<(), Failed> {
     Ok(())
 }
 
+/// What a session says that ends before anybody sits down.
+fn refused(screen: &Screen, study: &Path, data: &Path) -> Result<String, Failed> {
+    let mut program = screen.session(study, data);
+    until("the program ends", || {
+        screen.key("Return");
+        std::thread::sleep(Duration::from_millis(200));
+        program.0.try_wait().unwrap().is_some()
+    })?;
+    assert_eq!(program.0.wait().unwrap().code(), Some(1));
+    Ok(std::io::read_to_string(program.0.stderr.take().unwrap()).unwrap())
+}
+
 /// Xvfb paces nothing: the self-test says so, and a main study refuses.
 fn self_test() -> Result<(), Failed> {
-    let folder = tempfile::tempdir().unwrap();
-    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
-    support::write_study(&study, |text| text.replace("demo = true", "demo = false"));
-    let screen = Screen::new("640x480");
+    let (_folder, study, data, screen) = laboratory("640x480", |text| text.replace("demo = true", "demo = false"));
     let mut command = Command::new(env!("CARGO_BIN_EXE_crex-session"));
     command.arg(&study).args(["--self-test", "--json"]).env("DISPLAY", &screen.name).env_remove("WAYLAND_DISPLAY");
     let output = command.output().unwrap();
@@ -403,32 +410,15 @@ fn self_test() -> Result<(), Failed> {
     assert_eq!(found["display"]["pixels"]["differing_bytes"], 0);
     assert_eq!(found["intervals"], 20);
 
-    let mut program = screen.session(&study, &data);
-    until("the program ends", || {
-        screen.key("Return");
-        std::thread::sleep(Duration::from_millis(200));
-        program.0.try_wait().unwrap().is_some()
-    })?;
-    assert_eq!(program.0.wait().unwrap().code(), Some(1));
-    let said: Vec<String> = BufReader::new(program.0.stderr.take().unwrap()).lines().map_while(Result::ok).collect();
-    assert!(said.join("\n").contains("--allow-unverified"), "{said:?}");
+    let said = refused(&screen, &study, &data)?;
+    assert!(said.contains("--allow-unverified"), "{said}");
     assert!(!data.join("sessions/P01").exists());
     Ok(())
 }
 
 fn too_large() -> Result<(), Failed> {
-    let folder = tempfile::tempdir().unwrap();
-    let (study, data) = (folder.path().join("study"), folder.path().join("data"));
-    support::write_study(&study, |text| text.replace("width_px = 64", "width_px = 700"));
-    let screen = Screen::new("640x480");
-    let mut program = screen.session(&study, &data);
-    until("the program ends", || {
-        screen.key("Return");
-        std::thread::sleep(Duration::from_millis(200));
-        program.0.try_wait().unwrap().is_some()
-    })?;
-    assert_eq!(program.0.wait().unwrap().code(), Some(1));
-    let said: Vec<String> = BufReader::new(program.0.stderr.take().unwrap()).lines().map_while(Result::ok).collect();
-    assert!(said.join("\n").contains("700 x 48"), "{said:?}");
+    let (_folder, study, data, screen) = laboratory("640x480", |text| text.replace("width_px = 64", "width_px = 700"));
+    let said = refused(&screen, &study, &data)?;
+    assert!(said.contains("700 x 48"), "{said}");
     Ok(())
 }
