@@ -1,5 +1,8 @@
 //! The image planes: light that primary rays met, a layer for each component, and the ambient estimate.
 
+use std::fmt;
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 
 use crate::color::Rgb;
@@ -25,6 +28,30 @@ pub enum Plane {
     Layer(Component),
     /// The estimate of the diffuse light that was not traced (`-av`).
     Ambient,
+}
+
+impl Plane {
+    /// All that there are, in the order of files.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let layers = Component::ALL.into_iter().map(Self::Layer);
+        std::iter::once(Self::Direct).chain(layers).chain(std::iter::once(Self::Ambient))
+    }
+
+    /// The plane of a layer's name in files, which is how it displays: `direct`, a component's letter or `ambient`.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::all().find(|plane| plane.to_string() == name)
+    }
+}
+
+impl fmt::Display for Plane {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Direct => f.write_str("direct"),
+            Self::Layer(component) => component.fmt(f),
+            Self::Ambient => f.write_str("ambient"),
+        }
+    }
 }
 
 /// Sums of radiance over the samples of some pixels, in double precision: what one parcel of rays adds to.
@@ -177,6 +204,30 @@ impl Film {
         self.ambient.as_ref()
     }
 
+    /// A plane; `None` counts as black.
+    #[must_use]
+    pub fn plane(&self, plane: Plane) -> Option<&Raster<Vec3>> {
+        match plane {
+            Plane::Direct => Some(&self.direct),
+            Plane::Layer(component) => self.layers[component].as_ref(),
+            Plane::Ambient => self.ambient.as_ref(),
+        }
+    }
+
+    /// The same, to change.
+    pub(crate) fn plane_mut(&mut self, plane: Plane) -> Option<&mut Raster<Vec3>> {
+        match plane {
+            Plane::Direct => Some(&mut self.direct),
+            Plane::Layer(component) => self.layers[component].as_mut(),
+            Plane::Ambient => self.ambient.as_mut(),
+        }
+    }
+
+    /// The planes that there are, in the order of files.
+    pub fn planes(&self) -> impl Iterator<Item = (Plane, &Raster<Vec3>)> {
+        Plane::all().filter_map(|plane| Some((plane, self.plane(plane)?)))
+    }
+
     /// Puts another plane of the film's size in the place of a layer.
     pub(crate) fn replace(&mut self, component: Component, plane: Raster<Vec3>) {
         assert_eq!((plane.width(), plane.height()), (self.width(), self.height()), "planes are of the film's size");
@@ -217,13 +268,20 @@ impl Film {
     /// Direct light, the ambient estimate and the layers of `components`, added up.
     #[must_use]
     pub fn develop(&self, components: ComponentSet) -> Raster<Vec3> {
-        let mut sums: Vec<DVec3> = self.direct.values().iter().map(|pixel| pixel.as_dvec3()).collect();
+        let pixels = self.develop_rows(components, 0..self.height());
+        Raster::from_values(self.width(), self.height(), pixels).expect("as many pixels as the direct plane")
+    }
+
+    /// The same of some rows, pixel by pixel. Panics unless the rows are within the film.
+    #[must_use]
+    pub fn develop_rows(&self, components: ComponentSet, rows: Range<usize>) -> Vec<Vec3> {
+        let range = rows.start * self.width()..rows.end * self.width();
+        let mut sums: Vec<DVec3> = self.direct.values()[range.clone()].iter().map(|pixel| pixel.as_dvec3()).collect();
         let layers = components.iter().filter_map(|component| self.layers[component].as_ref());
         for plane in layers.chain(&self.ambient) {
-            sums.iter_mut().zip(plane.values()).for_each(|(sum, pixel)| *sum += pixel.as_dvec3());
+            sums.iter_mut().zip(&plane.values()[range.clone()]).for_each(|(sum, pixel)| *sum += pixel.as_dvec3());
         }
-        let pixels = sums.into_iter().map(single).collect();
-        Raster::from_values(self.width(), self.height(), pixels).expect("as many pixels as the direct plane")
+        sums.into_iter().map(single).collect()
     }
 
     /// The whole picture.

@@ -11,6 +11,7 @@ pub mod geometry;
 pub mod importance;
 pub mod material;
 pub mod math;
+pub mod part;
 pub mod pattern;
 pub mod picture;
 pub mod propose;

@@ -182,3 +182,44 @@ fn maps_are_made_before_the_pictures_that_they_modulate() {
     assert_eq!(code(&made), 0, "{}", stderr(&made));
     assert!(grey::read(&study.join("maps/a.png")).unwrap().values().iter().all(|&value| value == 1.0));
 }
+
+#[test]
+fn several_machines_make_what_one_makes() {
+    let (alone, together) = (tiny_study(), tiny_study());
+    let (alone, together) = (alone.path(), together.path());
+    assert_eq!(code(&crex_stimuli(alone, &[])), 0);
+    let early = crex_stimuli(together, &["--shard", "1/3"]);
+    assert_eq!(code(&early), 2);
+    assert!(stderr(&early).contains("--maps"), "{}", stderr(&early));
+    assert!(!together.join("pictures").exists());
+    assert_eq!(code(&crex_stimuli(together, &["--maps"])), 0);
+    for shard in ["3/3", "1/3"] {
+        assert_eq!(code(&crex_stimuli(together, &["--shard", shard])), 0);
+    }
+    assert!(Manifest::load(together).unwrap().pictures.is_empty(), "parts are no pictures");
+    let early = crex_stimuli(together, &["--merge"]);
+    assert_eq!(code(&early), 2);
+    assert!(stderr(&early).contains("part 2 of 3 is missing"), "{}", stderr(&early));
+    // A machine that died is replaced; what is there is kept.
+    let picture = Manifest::load(alone).unwrap().pictures["a_hq"].file.clone();
+    let part = |number: u32| together.join(format!("{}.{number}-of-3.part", picture.display()));
+    let before = std::fs::metadata(part(1)).unwrap().modified().unwrap();
+    for shard in ["1/3", "2/3"] {
+        assert_eq!(code(&crex_stimuli(together, &["--shard", shard])), 0);
+    }
+    assert_eq!(std::fs::metadata(part(1)).unwrap().modified().unwrap(), before);
+    let merged = crex_stimuli(together, &["--merge"]);
+    assert_eq!(code(&merged), 0, "{}", stderr(&merged));
+    let [one, other] = [alone, together].map(|study| Manifest::load(study).unwrap());
+    assert_eq!((one.pictures, one.maps), (other.pictures, other.maps));
+    assert!(!part(1).exists());
+    assert_eq!(code(&crex_stimuli(together, &["--check"])), 0);
+    // Parts of another scene than the study shows now are not joined.
+    assert_eq!(code(&crex_stimuli(together, &["--force", "--only", "a_hq", "--shard", "1/1"])), 0);
+    let shell = std::fs::read_to_string(together.join("shell.rad")).unwrap();
+    std::fs::write(together.join("shell.rad"), shell.replace("0 9 0", "0 8 0")).unwrap();
+    assert_eq!(code(&crex_stimuli(together, &["--maps"])), 0);
+    let stale = crex_stimuli(together, &["--merge", "--only", "a_hq"]);
+    assert_eq!(code(&stale), 2);
+    assert!(stderr(&stale).contains("another picture than the study asks for now"), "{}", stderr(&stale));
+}

@@ -44,6 +44,7 @@ const RENDERER_ARROWS: &[(&str, &[&str])] = &[
     ("importance", &["raster", "film", "features", "color", "component", "math"]),
     ("schedule", &["component", "crex", "work", "importance"]),
     ("picture", &["raster", "color", "component"]),
+    ("part", &["component", "crex", "film", "picture", "render", "schedule", "work"]),
     ("trade", &[]),
     ("propose", &["component", "color", "crex", "geometry", "picture", "raster", "render", "scene", "schedule"]),
 ];

@@ -4,6 +4,7 @@ mod filtered;
 mod outcome;
 mod pieces;
 mod settings;
+mod shard;
 mod stages;
 mod tiles;
 mod timed;
@@ -16,8 +17,10 @@ use crate::schedule::{Clock, Scheduler};
 use crate::transport::Rule;
 
 pub use filtered::SmoothedPlane;
-pub use outcome::{Rendering, Snapshot};
+pub use outcome::{Account, Rendering, Snapshot};
+pub use pieces::{TILE, planes, tile, tile_count};
 pub use settings::{RenderError, Settings};
+pub use shard::Shard;
 pub use timed::{RoundRecord, TimedRecord, TimedRendering};
 
 /// A scene ready to be rendered.

@@ -22,6 +22,53 @@ pub struct Rendering {
     pub stopped: Vec<Span>,
 }
 
+impl Rendering {
+    /// What was done, without the picture.
+    #[must_use]
+    pub fn account(&self) -> Account {
+        let Self { primary, stages, left, stopped, .. } = self;
+        Account { primary: *primary, stages: stages.clone(), left: *left, stopped: stopped.clone() }
+    }
+}
+
+/// What was done to make a picture or a part of it; as in [`Rendering`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Account {
+    /// What the primary rays did.
+    pub primary: WorkReport,
+    /// What every stage did.
+    pub stages: Vec<StageRow>,
+    /// Rays that were spawned and not traced.
+    pub left: PerComponent<u64>,
+    /// Where the `*`s stand that were stopped before their rays ran out.
+    pub stopped: Vec<Span>,
+}
+
+impl Account {
+    /// The account of a picture from those of its parts, in any order but for the last digit of the seconds.
+    #[must_use]
+    pub fn sum(parts: impl IntoIterator<Item = Self>) -> Self {
+        let outcome = |Self { primary, stages: rows, left, stopped }| Outcome { primary, rows, left, stopped };
+        let mut sum = Outcome::default();
+        sum.add_all(parts.into_iter().map(outcome).collect());
+        sum.into()
+    }
+
+    /// The components of which rays were traced: those that a picture has layers for.
+    #[must_use]
+    pub fn reached(&self) -> ComponentSet {
+        reached(&self.stages)
+    }
+}
+
+impl From<Outcome> for Account {
+    fn from(outcome: Outcome) -> Self {
+        let Outcome { primary, rows: stages, left, mut stopped } = outcome;
+        stopped.sort_by_key(|span| (span.start, span.end));
+        Self { primary, stages, left, stopped }
+    }
+}
+
 /// A state of the picture between two stages.
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot<'a> {
@@ -44,14 +91,22 @@ pub(super) struct Outcome {
 
 impl Outcome {
     pub(super) fn add(&mut self, other: Self) {
-        add_report(&mut self.primary, &other.primary);
-        add_counts(&mut self.left, &other.left);
-        self.rows = merge_rows([std::mem::take(&mut self.rows), other.rows]);
-        for span in other.stopped {
-            if !self.stopped.contains(&span) {
-                self.stopped.push(span);
+        self.add_all(vec![other]);
+    }
+
+    pub(super) fn add_all(&mut self, others: Vec<Self>) {
+        let mut rows = vec![std::mem::take(&mut self.rows)];
+        for other in others {
+            add_report(&mut self.primary, &other.primary);
+            add_counts(&mut self.left, &other.left);
+            rows.push(other.rows);
+            for span in other.stopped {
+                if !self.stopped.contains(&span) {
+                    self.stopped.push(span);
+                }
             }
         }
+        self.rows = merge_rows(rows);
     }
 }
 
@@ -79,8 +134,7 @@ pub(super) fn reached(rows: &[StageRow]) -> ComponentSet {
 }
 
 pub(super) fn finish(mut film: Film, outcome: Outcome) -> Rendering {
-    let Outcome { primary, rows: stages, left, mut stopped } = outcome;
+    let Account { primary, stages, left, stopped } = outcome.into();
     film.keep(reached(&stages));
-    stopped.sort_by_key(|span| (span.start, span.end));
     Rendering { film, primary, stages, left, stopped }
 }

@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use crate::color::Rgb;
 use crate::component::{Component, ComponentSet};
-use crate::film::{Block, Film};
+use crate::crex::Program;
+use crate::film::{Block, Film, Plane};
+use crate::scene::Scene;
 use crate::transport::{Modulation, Parcel, Samples, Tracer};
 use crate::work::WorkReport;
 
@@ -12,10 +14,43 @@ use super::Renderer;
 use super::settings::Settings;
 
 /// Edge of an image tile in pixels.
-const TILE: usize = 16;
+pub const TILE: usize = 16;
 
 /// Primary rays of a parcel, about: what keeps its bins within a processor's cache, and the cost of its stages small.
 const RAYS_PER_PARCEL: usize = 8192;
+
+/// Tiles of a picture.
+#[must_use]
+pub fn tile_count(width: usize, height: usize) -> usize {
+    width.div_ceil(TILE) * height.div_ceil(TILE)
+}
+
+/// A tile of a picture by its number: row by row from the top, each row from the left.
+#[must_use]
+pub fn tile(width: usize, height: usize, index: usize) -> Block {
+    let across = width.div_ceil(TILE);
+    let (x, y) = (index % across * TILE, index / across * TILE);
+    Block { x, y, width: TILE.min(width - x), height: TILE.min(height - y) }
+}
+
+/// The planes of a picture that is to be rendered so: one for light that primary rays meet, one for each component that the
+/// scene can spawn and the crex runs, and one for the ambient estimate if there is any.
+#[must_use]
+pub fn planes(scene: &Scene, program: &Program, settings: &Settings) -> Vec<Plane> {
+    let components = stored(scene, program, settings);
+    let there = |plane: &Plane| match plane {
+        Plane::Direct => true,
+        Plane::Layer(component) => components.contains(*component),
+        Plane::Ambient => settings.ambient != Rgb::ZERO,
+    };
+    Plane::all().filter(there).collect()
+}
+
+fn stored(scene: &Scene, program: &Program, settings: &Settings) -> ComponentSet {
+    let spawned = scene.components(settings.limits.glossy_threshold);
+    let run = program.components();
+    Component::ALL.into_iter().filter(|&component| spawned.contains(component) && run.contains(component)).collect()
+}
 
 impl<'a> Renderer<'a> {
     pub(super) fn timed(&self, work: impl FnOnce() -> WorkReport) -> WorkReport {
@@ -56,20 +91,13 @@ impl<'a> Renderer<'a> {
 
     /// The components that the scene can spawn and the crex runs.
     pub(super) fn stored(&self) -> ComponentSet {
-        let spawned = self.scene.components(self.settings.limits.glossy_threshold);
-        let run = self.program.components();
-        Component::ALL.into_iter().filter(|&component| spawned.contains(component) && run.contains(component)).collect()
+        stored(self.scene, self.program, &self.settings)
     }
 
     /// The tiles of the picture, row by row.
     pub(super) fn tiles(&self) -> Vec<Block> {
         let Settings { width, height, .. } = self.settings;
-        let edge = |start: usize, end: usize| TILE.min(end - start);
-        let rows = (0..height).step_by(TILE);
-        rows.flat_map(|y| {
-            (0..width).step_by(TILE).map(move |x| Block { x, y, width: edge(x, width), height: edge(y, height) })
-        })
-        .collect()
+        (0..tile_count(width, height)).map(|index| tile(width, height, index)).collect()
     }
 
     /// Sample numbers in pieces that keep a parcel's bins small.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use renderer::picture::Compression;
 use renderer::rad::ViewSpec;
+use renderer::render::Shard;
 use renderer::scene::View;
 use renderer::schedule::{Clock, MonotonicClock};
 
@@ -11,22 +12,6 @@ use crate::console::{self, Failure};
 use crate::output::{self, Output};
 use crate::render::{Args, Prepared};
 use crate::timed::{self, Limit};
-
-/// A part of the frames: number I of N, from 1.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Shard {
-    number: usize,
-    all: usize,
-}
-
-/// Reads `I/N`.
-pub(crate) fn shard(text: &str) -> Result<Shard, String> {
-    let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
-    match numbers {
-        Some((number, all)) if 1 <= number && number <= all => Ok(Shard { number, all }),
-        _ => Err("expected I/N with I from 1 to N, such as 2/8".to_owned()),
-    }
-}
 
 /// The views of a list, one a line that holds `VIEW=` or begins with `rvu`; the rest of the file is skipped.
 pub(crate) fn views(file: &Path) -> Result<Vec<ViewSpec>, Failure> {
@@ -68,10 +53,10 @@ pub(crate) fn run(
     if args.output.is_empty() || args.output.iter().any(|path| path == Path::new("-")) {
         return Err(Failure::input("--views makes many pictures: name a file with -o, not standard output"));
     }
-    let Shard { number, all } = args.shard.unwrap_or(Shard { number: 1, all: 1 });
+    let shard = args.shard.unwrap_or(Shard::WHOLE);
     let names = |frame: usize| args.output.iter().map(|path| numbered(path, frame)).collect::<Vec<_>>();
-    let mine = (0..views.len()).filter(|frame| frame % all == number - 1);
-    let waiting: Vec<usize> = mine.filter(|&frame| !names(frame).iter().all(|name| name.exists())).collect();
+    let waiting: Vec<usize> =
+        shard.of(0..views.len()).filter(|&frame| !names(frame).iter().all(|name| name.exists())).collect();
     let stored = args.profile.as_deref();
     let mut profile = None;
     output::clean_up_when_interrupted(waiting.iter().flat_map(|&frame| names(frame)).collect());

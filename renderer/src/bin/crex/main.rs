@@ -7,6 +7,7 @@ mod console;
 mod estimate;
 mod frames;
 mod importance;
+mod merge;
 mod options;
 mod output;
 mod plan;
@@ -40,6 +41,8 @@ struct Cli {
 enum Command {
     /// Render scenes to pictures
     Render(Box<render::Args>),
+    /// Join the parts of a picture that several machines rendered
+    Merge(merge::Args),
     /// Predict what a crex will cost, from what rays have cost
     Estimate(Box<estimate::Args>),
     /// Explain a crex stage by stage
@@ -77,6 +80,7 @@ fn run(words: Vec<OsString>, clock: &MonotonicClock) -> Result<(), Failure> {
     let cli = Cli::from_arg_matches(&matches).map_err(Failure::Usage)?;
     match cli.command {
         Command::Render(args) => render::run(&args, &radiance, clock),
+        Command::Merge(args) => merge::run(&args),
         Command::Estimate(args) => estimate::run(&args, &radiance, clock),
         Command::Auto(args) => auto::run(&args, &radiance),
         Command::Trade(args) => trade::run(&args, &radiance, clock),

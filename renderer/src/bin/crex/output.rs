@@ -1,15 +1,16 @@
 //! From a film to picture files, and what an interruption leaves of them.
 
-use std::io::{BufWriter, Write};
+use std::borrow::Borrow;
+use std::io::{BufWriter, StdoutLock};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use renderer::component::Component;
-use renderer::film::Film;
+use renderer::component::ComponentSet;
+use renderer::film::{Film, Plane};
 use renderer::picture::{
     AtomicFile, Band, Compression, Error, Format, HdrStream, Header, PictureFile, Pixel, Provenance,
 };
-use renderer::raster::Raster;
 
 use crate::console::Failure;
 
@@ -55,15 +56,18 @@ impl Output {
         provenance: &Provenance,
         compression: Compression,
     ) -> Result<(), Failure> {
-        match self {
-            Self::File(path) => pack_film(path, film, exposure, provenance, compression).map_err(Failure::from),
-            Self::Stream => {
-                let header = header(film, exposure, provenance);
-                let stdout = BufWriter::new(std::io::stdout().lock());
-                stream(stdout, &header, film).map_err(Failure::from)
-            }
-        }
+        let pictures = Pictures { compression, ..Pictures::of_film(film, exposure, provenance) };
+        pictures.write(std::slice::from_ref(self), None, [Ok(film)])
     }
+}
+
+/// The places for pictures, each checked.
+pub(crate) fn checked(paths: &[PathBuf]) -> Result<Vec<Output>, Failure> {
+    let outputs = paths.iter().map(|path| Output::new(path)).collect::<Result<Vec<_>, _>>()?;
+    if outputs.iter().filter(|output| output.path().is_none()).count() > 1 {
+        return Err(Failure::input("`-o -` is given twice: standard output holds one picture"));
+    }
+    Ok(outputs)
 }
 
 /// Says early that a file's folder is missing or is none.
@@ -78,83 +82,129 @@ pub(crate) fn check_folder(path: &Path) -> Result<(), Failure> {
 }
 
 /// Writes a film in the format of the name; EXR has a layer for everything that was reached.
-pub(crate) fn write_film(path: &Path, film: &Film, exposure: f64, provenance: &Provenance) -> Result<(), Error> {
-    pack_film(path, film, exposure, provenance, Compression::Zip)
+pub(crate) fn write_film(path: &Path, film: &Film, exposure: f64, provenance: &Provenance) -> Result<(), Failure> {
+    Output::File(path.to_owned()).write(film, exposure, provenance, Compression::Zip)
 }
 
-fn pack_film(
-    path: &Path,
-    film: &Film,
-    exposure: f64,
-    provenance: &Provenance,
-    compression: Compression,
-) -> Result<(), Error> {
-    let mut header = header(film, exposure, provenance);
-    let layers: Vec<(String, &Raster<Vec3>)> = match Format::of_name(path) {
-        Some(Format::Exr) => layers(film),
-        _ => Vec::new(),
-    };
-    header.layers = layers.iter().map(|(name, _)| name.clone()).collect();
-    header.compression = compression;
-    let mut file = PictureFile::create(path, &header)?;
-    for (rows, beauty) in bands(&film.beauty()) {
-        let planes: Vec<Vec<Pixel>> = layers.iter().map(|(_, plane)| pixels(&plane.values()[rows.clone()])).collect();
-        let planes: Vec<&[Pixel]> = planes.iter().map(Vec::as_slice).collect();
-        file.write(Band { beauty: &beauty, layers: &planes })?;
+/// What is known of a picture before its rows come.
+pub(crate) struct Pictures<'a> {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    /// The parts that add up to the beauty.
+    pub(crate) planes: Vec<Plane>,
+    pub(crate) exposure: f64,
+    pub(crate) provenance: &'a Provenance,
+    pub(crate) compression: Compression,
+}
+
+/// A picture being written.
+struct Sink {
+    target: Target,
+    shows: Shows,
+}
+
+enum Target {
+    File(Box<PictureFile>),
+    Stream(Box<HdrStream<BufWriter<StdoutLock<'static>>>>),
+}
+
+#[derive(Clone, Copy)]
+enum Shows {
+    Beauty,
+    BeautyAndLayers,
+    One(Plane),
+}
+
+impl<'a> Pictures<'a> {
+    /// A film of which every plane is shown.
+    pub(crate) fn of_film(film: &Film, exposure: f64, provenance: &'a Provenance) -> Self {
+        let planes = film.planes().map(|(plane, _)| plane).collect();
+        let (width, height) = (film.width(), film.height());
+        Self { width, height, planes, exposure, provenance, compression: Compression::Zip }
     }
-    file.finish()
-}
 
-/// Writes each part that adds up to the film, `direct`, `D`, `S` and so on, as a picture of its own into a folder.
-pub(crate) fn write_parts(
-    folder: &Path,
-    extension: &str,
-    film: &Film,
-    exposure: f64,
-    provenance: &Provenance,
-) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder)
-        .map_err(|error| Failure::Cannot(format!("--parts {}: {error}", folder.display())))?;
-    for (name, part) in layers(film) {
-        let mut file =
-            PictureFile::create(&folder.join(format!("{name}.{extension}")), &header(film, exposure, provenance))?;
-        for (_, pixels) in bands(part) {
-            file.write(Band { beauty: &pixels, layers: &[] })?;
+    /// Writes a picture, whose rows come in bands from the top, to all `outputs` at once, and with `parts` each plane as a picture
+    /// of its own into that folder, with that extension.
+    pub(crate) fn write<F: Borrow<Film>>(
+        &self,
+        outputs: &[Output],
+        parts: Option<(&Path, &str)>,
+        bands: impl IntoIterator<Item = Result<F, Failure>>,
+    ) -> Result<(), Failure> {
+        let mut sinks = outputs.iter().map(|output| self.begin(output)).collect::<Result<Vec<_>, _>>()?;
+        if let Some((folder, extension)) = parts {
+            std::fs::create_dir_all(folder)
+                .map_err(|error| Failure::Cannot(format!("--parts {}: {error}", folder.display())))?;
+            for &plane in &self.planes {
+                let path = folder.join(format!("{plane}.{extension}"));
+                let file = PictureFile::create(&path, &self.header(Vec::new()))?;
+                sinks.push(Sink { target: Target::File(Box::new(file)), shows: Shows::One(plane) });
+            }
         }
-        file.finish()?;
+        for band in bands {
+            let band = band?;
+            let band = band.borrow();
+            for start in (0..band.height()).step_by(BAND_ROWS) {
+                let rows = start..band.height().min(start + BAND_ROWS);
+                let beauty = pixels(&band.develop_rows(ComponentSet::ALL, rows.clone()));
+                sinks.iter_mut().try_for_each(|sink| self.put(sink, band, rows.clone(), &beauty))?;
+            }
+        }
+        for Sink { target, .. } in sinks {
+            match target {
+                Target::File(file) => file.finish()?,
+                Target::Stream(stream) => stream.finish()?,
+            }
+        }
+        Ok(())
     }
-    Ok(())
-}
 
-fn stream(stdout: impl Write, header: &Header, film: &Film) -> Result<(), Error> {
-    let mut stream = HdrStream::start(stdout, header)?;
-    for (_, beauty) in bands(&film.beauty()) {
-        stream.write(Band { beauty: &beauty, layers: &[] })?;
+    fn begin(&self, output: &Output) -> Result<Sink, Error> {
+        Ok(match output {
+            Output::File(path) if Format::of_name(path) == Some(Format::Exr) => {
+                let names = self.planes.iter().map(ToString::to_string).collect();
+                let file = PictureFile::create(path, &self.header(names))?;
+                Sink { target: Target::File(Box::new(file)), shows: Shows::BeautyAndLayers }
+            }
+            Output::File(path) => {
+                let file = PictureFile::create(path, &self.header(Vec::new()))?;
+                Sink { target: Target::File(Box::new(file)), shows: Shows::Beauty }
+            }
+            Output::Stream => {
+                let stdout = BufWriter::new(std::io::stdout().lock());
+                let stream = HdrStream::start(stdout, &self.header(Vec::new()))?;
+                Sink { target: Target::Stream(Box::new(stream)), shows: Shows::Beauty }
+            }
+        })
     }
-    stream.finish()
-}
 
-fn header(film: &Film, exposure: f64, provenance: &Provenance) -> Header {
-    let mut header = Header::new(film.width(), film.height(), provenance.clone());
-    header.exposure = exposure;
-    header
-}
+    fn header(&self, layers: Vec<String>) -> Header {
+        let (exposure, compression) = (self.exposure, self.compression);
+        Header { layers, exposure, compression, ..Header::new(self.width, self.height, self.provenance.clone()) }
+    }
 
-/// The parts that add up to the beauty.
-fn layers(film: &Film) -> Vec<(String, &Raster<Vec3>)> {
-    let components = Component::ALL.into_iter();
-    let components = components.filter_map(|component| Some((component.to_string(), film.layer(component)?)));
-    let ambient = film.ambient().map(|plane| ("ambient".to_owned(), plane));
-    std::iter::once(("direct".to_owned(), film.direct())).chain(components).chain(ambient).collect()
-}
-
-/// Some rows at a time, with the places of their values.
-fn bands(raster: &Raster<Vec3>) -> impl Iterator<Item = (std::ops::Range<usize>, Vec<Pixel>)> {
-    let (all, step) = (raster.values().len(), raster.width() * BAND_ROWS);
-    (0..all).step_by(step).map(move |start| {
-        let range = start..all.min(start + step);
-        (range.clone(), pixels(&raster.values()[range]))
-    })
+    fn put(&self, sink: &mut Sink, band: &Film, rows: Range<usize>, beauty: &[Pixel]) -> Result<(), Error> {
+        let range = rows.start * self.width..rows.end * self.width;
+        // A plane that a band has not is black.
+        let plane = |plane| match band.plane(plane) {
+            Some(plane) => pixels(&plane.values()[range.clone()]),
+            None => vec![[0.0; 3]; range.len()],
+        };
+        let layers: Vec<Vec<Pixel>> = match sink.shows {
+            Shows::Beauty => Vec::new(),
+            Shows::BeautyAndLayers => self.planes.iter().map(|&one| plane(one)).collect(),
+            Shows::One(one) => vec![plane(one)],
+        };
+        let layers: Vec<&[Pixel]> = layers.iter().map(Vec::as_slice).collect();
+        let rows = match sink.shows {
+            Shows::One(_) => Band { beauty: layers[0], layers: &[] },
+            _ => Band { beauty, layers: &layers },
+        };
+        match &mut sink.target {
+            Target::File(file) => file.write(rows),
+            Target::Stream(stream) => stream.write(rows),
+        }
+    }
 }
 
 fn pixels(values: &[Vec3]) -> Vec<Pixel> {

@@ -1,24 +1,27 @@
 //! `crex render`: scenes to pictures.
 
 mod request;
+mod shards;
 
 use std::path::{Path, PathBuf};
 
 use renderer::component::Component;
+use renderer::film::Film;
 use renderer::importance::ran;
 use renderer::picture::{self, AtomicFile, Compression, Format, Picture, Quantity};
 use renderer::raster::Raster;
-use renderer::render::{Rendering, Settings};
+use renderer::render::{Account, Settings, Shard};
 use renderer::schedule::{Clock, MonotonicClock};
 
 use crate::console::Failure;
 use crate::options::RadianceOptions;
-use crate::output::{self, Output};
+use crate::output::{self, Output, Pictures};
 use crate::scene_files::SceneArgs;
 use crate::stats::Stats;
 use crate::{frames, snapshots, timed};
 
 pub(crate) use request::{Prepared, Request, prepare, prepare_scene};
+pub(crate) use shards::write_joined;
 
 /// What `crex render` takes besides rpict's options.
 #[derive(clap::Args, Clone, Debug)]
@@ -89,9 +92,12 @@ pub(crate) struct Args {
     /// With --views, have all frames done after so many seconds, instead of --time for each
     #[arg(long, value_name = "SECONDS", value_parser = timed::seconds, requires = "views", conflicts_with = "time")]
     pub(crate) total_time: Option<f64>,
-    /// With --views, render only frames I, I+N, I+2N ...
-    #[arg(long, value_name = "I/N", value_parser = frames::shard, requires = "views")]
-    pub(crate) shard: Option<frames::Shard>,
+    /// Render only part I of N, into a file for `crex merge`; with --views, only frames I, I+N, I+2N ...
+    #[arg(long, value_name = "I/N")]
+    pub(crate) shard: Option<Shard>,
+    /// Planes of the picture that would take more MiB than this lie in a file beside the first OUT until it is written
+    #[arg(long, value_name = "MIB", default_value_t = 512)]
+    memory: u64,
     /// Render again, without a clock and to the same bits, what a run under --time wrote with --stats
     #[arg(long, value_name = "STATS", conflicts_with_all = ["time", "snapshots"])]
     replay: Option<PathBuf>,
@@ -122,6 +128,9 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         let options = RadianceOptions { view: views[0], view_given: true, ..options.clone() };
         return frames::run(args, prepare(args, &options)?, &views, file, clock);
     }
+    if let Some(shard) = args.shard {
+        return shards::run(args, shard, &prepare(args, options)?, clock);
+    }
     let outputs = outputs(args)?;
     let prepared = prepare(args, options)?;
     let request = &prepared.request;
@@ -136,11 +145,15 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         for output in &outputs {
             output.write(&timed.rendering.film, args.exposure, &request.provenance, compression)?;
         }
-        write_beside(args, &prepared, &outputs, &timed.rendering)?;
-        let stats =
-            Stats::new(&request.program, &request.settings, &timed.rendering, timed::threads(&request.settings));
+        write_parts(args, &prepared, &outputs, &timed.rendering.film)?;
+        let account = timed.rendering.account();
+        write_beside(args, &prepared, &account)?;
+        let stats = Stats::new(&request.program, &request.settings, &account, timed::threads(&request.settings));
         let record = timed::TimedStats::new(&timed, compression, 0.0);
         return write_stats(args, &prepared, stats.with_time(None, record), clock);
+    }
+    if args.snapshots.is_none() && args.filter.is_empty() && prepared.exceeds(args.memory) {
+        return shards::run_on_disk(args, &prepared, &outputs, clock);
     }
     let rendering = match &args.snapshots {
         None => prepared.render(clock, None)?,
@@ -154,8 +167,10 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
     for output in &outputs {
         output.write(&rendering.film, args.exposure, &request.provenance, Compression::Zip)?;
     }
-    write_beside(args, &prepared, &outputs, &rendering)?;
-    let stats = Stats::new(&request.program, &request.settings, &rendering, timed::threads(&request.settings));
+    write_parts(args, &prepared, &outputs, &rendering.film)?;
+    let account = rendering.account();
+    write_beside(args, &prepared, &account)?;
+    let stats = Stats::new(&request.program, &request.settings, &account, timed::threads(&request.settings));
     write_stats(args, &prepared, stats, clock)
 }
 
@@ -174,37 +189,44 @@ fn run_timed(
     let mut limit = timed::Limit::new(seconds, (file, timed::profile(file, prepared)?), beside, prepared, outputs);
     let timed = limit.render(prepared, clock)?;
     limit.write(args.exposure, prepared, outputs, &timed.rendering, clock)?;
-    write_beside(args, prepared, outputs, &timed.rendering)?;
+    write_parts(args, prepared, outputs, &timed.rendering.film)?;
+    let account = timed.rendering.account();
+    write_beside(args, prepared, &account)?;
     limit.save()?;
-    let stats = Stats::new(&request.program, &request.settings, &timed.rendering, timed::threads(&request.settings));
+    let stats = Stats::new(&request.program, &request.settings, &account, timed::threads(&request.settings));
     write_stats(args, prepared, stats.with_time(Some(limit.seconds()), limit.stats(&timed)), clock)
 }
 
-/// Writes the pictures that are asked for beside the main ones.
-fn write_beside(args: &Args, prepared: &Prepared, outputs: &[Output], rendering: &Rendering) -> Result<(), Failure> {
-    let request = &prepared.request;
-    if let Some(folder) = &args.parts {
-        let extension = format_beside(outputs[0].path());
-        output::write_parts(folder, extension, &rendering.film, args.exposure, &request.provenance)?;
+/// Writes the parts of the picture, if they are asked for.
+fn write_parts(args: &Args, prepared: &Prepared, outputs: &[Output], film: &Film) -> Result<(), Failure> {
+    let Some(folder) = &args.parts else { return Ok(()) };
+    let pictures = Pictures::of_film(film, args.exposure, &prepared.request.provenance);
+    pictures.write(&[], Some((folder, format_beside(outputs[0].path()))), [Ok(film)])
+}
+
+/// Writes what is asked for beside the picture and does not need it.
+fn write_beside(args: &Args, prepared: &Prepared, account: &Account) -> Result<(), Failure> {
+    match &args.ran {
+        Some(path) => write_ran(path, &prepared.request, account),
+        None => Ok(()),
     }
-    if let Some(path) = &args.ran {
-        write_ran(path, request, rendering)?;
+}
+
+/// Says so if an exposure is none.
+fn check_exposure(exposure: f64) -> Result<(), Failure> {
+    if exposure.is_finite() && exposure > 0.0 {
+        return Ok(());
     }
-    Ok(())
+    Err(Failure::input(format!("--exposure {exposure} must be a positive number")))
 }
 
 /// The places for the pictures, each checked, and made safe against interruption.
 fn outputs(args: &Args) -> Result<Vec<Output>, Failure> {
-    if !(args.exposure.is_finite() && args.exposure > 0.0) {
-        return Err(Failure::input(format!("--exposure {} must be a positive number", args.exposure)));
-    }
+    check_exposure(args.exposure)?;
     if args.output.is_empty() {
         return Err(Failure::input("no place for the picture: name it with -o, such as -o picture.exr"));
     }
-    let outputs = args.output.iter().map(|path| Output::new(path)).collect::<Result<Vec<_>, _>>()?;
-    if outputs.iter().filter(|output| output.path().is_none()).count() > 1 {
-        return Err(Failure::input("`-o -` is given twice: standard output holds one picture"));
-    }
+    let outputs = output::checked(&args.output)?;
     let mut paths: Vec<PathBuf> = outputs.iter().filter_map(Output::path).map(Path::to_owned).collect();
     if let Some(Output::Stream) = args.ran.as_deref().map(Output::new).transpose()? {
         return Err(Failure::input("--ran wants a file, not standard output"));
@@ -213,14 +235,15 @@ fn outputs(args: &Args) -> Result<Vec<Output>, Failure> {
         output::check_folder(file)?;
         paths.push(file.clone());
     }
+    paths.push(shards::scratch(&outputs));
     output::clean_up_when_interrupted(paths);
     Ok(outputs)
 }
 
 /// Writes which components were allowed to run where.
-fn write_ran(path: &Path, request: &Request, rendering: &Rendering) -> Result<(), Failure> {
+fn write_ran(path: &Path, request: &Request, account: &Account) -> Result<(), Failure> {
     let Settings { width, height, .. } = request.settings;
-    let rows = rendering.stages.iter().filter(|row| row.report.rays > 0);
+    let rows = account.stages.iter().filter(|row| row.report.rays > 0);
     // Continuous importance lets members run wherever it is above 0.
     let least = |threshold| if request.continuous { f32::from_bits(1) } else { threshold };
     let runs: Vec<ran::Run> = rows.map(|row| (row.stage.component, row.stage.threshold.map(least))).collect();

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use renderer::picture::{Error, Provenance};
+use renderer::picture::Provenance;
 use renderer::render::Snapshot;
 
 use crate::console::Failure;
@@ -15,7 +15,7 @@ pub(crate) struct Writer<'a> {
     exposure: f64,
     provenance: &'a Provenance,
     written: usize,
-    failure: Option<Error>,
+    failure: Option<Failure>,
 }
 
 impl<'a> Writer<'a> {
@@ -44,6 +44,6 @@ impl<'a> Writer<'a> {
 
     /// Says whether all were written.
     pub(crate) fn finish(self) -> Result<(), Failure> {
-        self.failure.map_or(Ok(()), |error| Err(error.into()))
+        self.failure.map_or(Ok(()), Err)
     }
 }

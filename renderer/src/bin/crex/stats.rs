@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use renderer::component::PerComponent;
 use renderer::crex::Program;
-use renderer::render::{Rendering, Settings};
+use renderer::render::{Account, Settings};
 use renderer::schedule::{Skipped, StageRow, executed};
 use renderer::work::WorkReport;
 use serde::Serialize;
@@ -70,12 +70,12 @@ enum SkippedStats {
 
 impl Stats {
     /// The object of a finished rendering; the wall clock and the memory are read by the caller.
-    pub(crate) fn new(program: &Program, settings: &Settings, rendering: &Rendering, threads: usize) -> Self {
-        let primary = StageStats::new("primary".to_owned(), [0, 0], 1, &rendering.primary);
-        let rows = rendering.stages.iter().map(|row| StageStats::of_row(program, row));
+    pub(crate) fn new(program: &Program, settings: &Settings, account: &Account, threads: usize) -> Self {
+        let primary = StageStats::new("primary".to_owned(), [0, 0], 1, &account.primary);
+        let rows = account.stages.iter().map(|row| StageStats::of_row(program, row));
         Self {
             crex: program.text().to_owned(),
-            executed: executed(program, &rendering.stages).crex,
+            executed: executed(program, &account.stages).crex,
             width: settings.width,
             height: settings.height,
             spp: settings.samples,
@@ -84,7 +84,7 @@ impl Stats {
             wall_s: 0.0,
             peak_bytes: peak_bytes(),
             deadline_s: None,
-            left: counts(&rendering.left),
+            left: counts(&account.left),
             scene: String::new(),
             modulation: String::new(),
             timed: None,
@@ -105,6 +105,11 @@ impl Stats {
     /// The same with the time since the program's start, seconds.
     pub(crate) fn with_wall_s(self, wall_s: f64) -> Self {
         Self { wall_s, ..self }
+    }
+
+    /// The same with the most memory that another process had, bytes.
+    pub(crate) fn with_peak_bytes(self, peak_bytes: Option<u64>) -> Self {
+        Self { peak_bytes, ..self }
     }
 }
 
@@ -143,7 +148,7 @@ fn counts(rays: &PerComponent<u64>) -> Counts {
 }
 
 /// The high-water mark of the process's memory; Linux tells it in a file.
-fn peak_bytes() -> Option<u64> {
+pub(crate) fn peak_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)

@@ -3,6 +3,7 @@
 //! First the importance maps, if the study says how they are made; then the pictures. A picture of a study is exactly what `crex render` makes of the words that [`words`] gives.
 
 mod maps;
+mod parts;
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -11,11 +12,12 @@ use std::path::{Path, PathBuf};
 use ::stimuli::{Manifest, PictureRecord, PictureStatus, Request, Sha256, Stimulus, Study, Timing};
 use clap::{CommandFactory, FromArgMatches};
 use renderer::color::{Rgb, luminance_cd_m2};
-use renderer::render::Rendering;
+use renderer::film::Film;
+use renderer::render::{Account, Shard};
 use renderer::schedule::{Clock, MonotonicClock};
 
 use crate::console::{self, Failure};
-use crate::{Cli, Command, options, output, render};
+use crate::{Cli, Command, options, output, render, timed};
 
 /// What `crex stimuli` takes.
 #[derive(clap::Args, Clone, Debug)]
@@ -32,6 +34,16 @@ pub(crate) struct Args {
     /// Render even what is as it should be
     #[arg(long)]
     force: bool,
+    /// Render only part I of N of each picture, into a file beside it, and write nothing else: as many machines as there are parts can
+    /// work at once. A part that is there already is kept
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["check", "merge", "maps"])]
+    shard: Option<Shard>,
+    /// Join the parts that --shard made to pictures, and remove them; says which are missing or double
+    #[arg(long, conflicts_with_all = ["check", "maps", "force"])]
+    merge: bool,
+    /// Make the importance maps and no pictures, as --shard wants it
+    #[arg(long, conflicts_with = "check")]
+    maps: bool,
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     threads: Option<u32>,
@@ -57,7 +69,14 @@ pub(crate) fn run(args: &Args, clock: &MonotonicClock) -> Result<(), Failure> {
     if args.check {
         return check(&maps, &jobs(&study, &manifest, &args.only)?);
     }
-    maps::make(&study, &maps, &mut manifest, args.force, clock)?;
+    if args.shard.is_some() || args.merge {
+        parts::check_maps(args, &maps)?;
+    } else {
+        maps::make(&study, &maps, &mut manifest, args.force, clock)?;
+    }
+    if args.maps {
+        return Ok(());
+    }
     // Whether a picture is stale depends on the maps.
     let jobs = jobs(&study, &manifest, &args.only)?;
     let jobs: Vec<Job> = jobs.into_iter().filter(|job| args.force || job.status != PictureStatus::Fresh).collect();
@@ -65,14 +84,24 @@ pub(crate) fn run(args: &Args, clock: &MonotonicClock) -> Result<(), Failure> {
         console::say("note", "every picture is what would be made");
         return Ok(());
     }
-    output::clean_up_when_interrupted(jobs.iter().map(|job| study.folder.join(job.stimulus.file())).collect());
+    let file = |job: &Job| {
+        let picture = study.folder.join(job.stimulus.file());
+        args.shard.map_or_else(|| picture.clone(), |shard| parts::path(&picture, shard))
+    };
+    output::clean_up_when_interrupted(jobs.iter().map(file).collect());
     for (i, job) in jobs.iter().enumerate() {
         let id = job.stimulus.id();
         console::say("note", &format!("{} of {}: {id}, {}", i + 1, jobs.len(), word(&job.status)));
-        let (record, timing) = make(&study, job, args.threads, clock).map_err(|failure| match failure {
+        let made = match args.shard {
+            Some(shard) => parts::render(&study, job, shard, args.threads, clock).map(|()| None),
+            None if args.merge => parts::merge(&study, job, clock).map(Some),
+            None => make(&study, job, args.threads, clock).map(|(record, timing)| Some((record, timing, Vec::new()))),
+        };
+        let made = made.map_err(|failure| match failure {
             Failure::Input(message) => Failure::Input(format!("{}: picture {id}: {message}", args.study.display())),
             other => other,
         })?;
+        let Some((record, timing, used)) = made else { continue };
         console::say("note", &format!("{id}: {:.1} s, {:.2} cd/m2", timing.seconds, record.mean_luminance_cd_m2));
         if manifest.study.is_empty() {
             manifest.study.clone_from(&study.id);
@@ -81,6 +110,9 @@ pub(crate) fn run(args: &Args, clock: &MonotonicClock) -> Result<(), Failure> {
         manifest.timings.insert(id, timing);
         forget_strangers(&study, &mut manifest);
         manifest.save(&study.folder).map_err(failure)?;
+        for file in used {
+            std::fs::remove_file(&file).map_err(|error| Failure::Cannot(format!("{}: {error}", file.display())))?;
+        }
     }
     Ok(())
 }
@@ -139,16 +171,16 @@ fn word(status: &PictureStatus) -> String {
     }
 }
 
-/// Renders one picture and says how it came about.
-fn make(
-    study: &Study,
-    job: &Job,
-    threads: Option<u32>,
-    clock: &MonotonicClock,
-) -> Result<(PictureRecord, Timing), Failure> {
-    let begun_s = clock.now_s();
-    let file = job.stimulus.file();
-    let path = study.folder.join(&file);
+/// A picture about to be made: everything read and checked.
+struct Ready {
+    path: PathBuf,
+    prepared: render::Prepared,
+    /// Digests of what was read, and not of what may be there when the rendering has ended.
+    inputs: BTreeMap<PathBuf, Sha256>,
+}
+
+fn ready(study: &Study, job: &Job, threads: Option<u32>) -> Result<Ready, Failure> {
+    let path = study.folder.join(job.stimulus.file());
     let (Command::Render(args), radiance) = parsed(words(&job.request, &study.folder, &path, threads))? else {
         unreachable!("the words begin with `crex render`")
     };
@@ -167,24 +199,41 @@ fn make(
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(|error| Failure::Cannot(format!("{}: {error}", folder.display())))?;
     }
-    // What was read, and not what may be there when the rendering has ended.
     let own = std::iter::once(&job.request.view).chain(&job.request.importance);
     let inputs = inputs(study, own, &prepared.files)?;
+    Ok(Ready { path, prepared, inputs })
+}
+
+/// Renders one picture and says how it came about.
+fn make(
+    study: &Study,
+    job: &Job,
+    threads: Option<u32>,
+    clock: &MonotonicClock,
+) -> Result<(PictureRecord, Timing), Failure> {
+    let begun_s = clock.now_s();
+    let ready = ready(study, job, threads)?;
+    let Ready { path, prepared, .. } = &ready;
     let rendering = prepared.render(clock, None)?;
-    output::write_film(&path, &rendering.film, job.request.exposure, &prepared.request.provenance)?;
-    let record = PictureRecord {
+    output::write_film(path, &rendering.film, job.request.exposure, &prepared.request.provenance)?;
+    let threads = timed::threads(&prepared.request.settings);
+    let record = record(job, ready, &rendering.account(), MeanLuminance::default().with(&rendering.film))?;
+    Ok((record, Timing { seconds: clock.now_s() - begun_s, threads }))
+}
+
+/// How a picture came about that was made and written.
+fn record(job: &Job, ready: Ready, account: &Account, mean: MeanLuminance) -> Result<PictureRecord, Failure> {
+    Ok(PictureRecord {
         layout: job.stimulus.layout.clone(),
         quality: job.stimulus.quality.clone(),
-        file,
-        sha256: Sha256::of_file(&path).map_err(failure)?,
+        file: job.stimulus.file(),
+        sha256: Sha256::of_file(&ready.path).map_err(failure)?,
         request: job.request.clone(),
-        inputs,
-        rays: rays(&rendering),
-        mean_luminance_cd_m2: mean_luminance_cd_m2(&rendering),
+        inputs: ready.inputs,
+        rays: rays(account),
+        mean_luminance_cd_m2: mean.cd_m2(),
         version: version(),
-    };
-    let threads = settings.threads.or_else(|| std::thread::available_parallelism().ok().map(usize::from));
-    Ok((record, Timing { seconds: clock.now_s() - begun_s, threads: threads.unwrap_or(1) }))
+    })
 }
 
 /// The words behind `crex` that make a picture.
@@ -241,18 +290,33 @@ fn inputs<'a>(
         .collect()
 }
 
-fn rays(rendering: &Rendering) -> BTreeMap<String, u64> {
-    let mut rays = BTreeMap::from([("primary".to_owned(), rendering.primary.rays)]);
-    for row in &rendering.stages {
+fn rays(account: &Account) -> BTreeMap<String, u64> {
+    let mut rays = BTreeMap::from([("primary".to_owned(), account.primary.rays)]);
+    for row in &account.stages {
         *rays.entry(row.stage.component.to_string()).or_default() += row.report.rays;
     }
     rays
 }
 
-fn mean_luminance_cd_m2(rendering: &Rendering) -> f64 {
-    let beauty = rendering.film.beauty();
-    let sum: Rgb = beauty.values().iter().map(|pixel| pixel.as_dvec3()).sum();
-    luminance_cd_m2(sum / beauty.values().len() as f64)
+/// The mean luminance of a picture whose rows come from the top: added up in that order, the same bits however many come at a time.
+#[derive(Default)]
+struct MeanLuminance {
+    sum: Rgb,
+    pixels: usize,
+}
+
+impl MeanLuminance {
+    fn with(mut self, rows: &Film) -> Self {
+        for pixel in rows.beauty().values() {
+            self.sum += pixel.as_dvec3();
+            self.pixels += 1;
+        }
+        self
+    }
+
+    fn cd_m2(&self) -> f64 {
+        luminance_cd_m2(self.sum / self.pixels as f64)
+    }
 }
 
 /// Drops what the study no longer shows.

@@ -4,7 +4,6 @@
 use std::fs;
 use std::path::Path;
 
-use renderer::component::Component;
 use renderer::picture::{Compression, Format, Input};
 use renderer::render::{Rendering, RoundRecord, Settings, TimedRecord, TimedRendering};
 use renderer::schedule::{Budget, Clock, MonotonicClock, ProfileCache};
@@ -186,15 +185,8 @@ fn writer_name(format: Option<Format>, compression: &'static str) -> &'static st
 /// The bytes of pixels that a writer is given.
 fn bytes(output: &Output, prepared: &Prepared) -> (Option<Format>, f64) {
     let format = output.path().and_then(Format::of_name);
-    let Settings { width, height, ambient, .. } = &prepared.request.settings;
-    let components = prepared.components();
-    let run = prepared.request.program.components();
-    let layers =
-        Component::ALL.iter().filter(|component| components.contains(**component) && run.contains(**component));
-    let planes = match format {
-        Some(Format::Exr) => 2 + layers.count() + usize::from(*ambient != renderer::color::Rgb::ZERO),
-        _ => 1,
-    };
+    let Settings { width, height, .. } = &prepared.request.settings;
+    let planes = if format == Some(Format::Exr) { 1 + prepared.planes().len() } else { 1 };
     (format, (width * height * planes * 12) as f64)
 }
 

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args as _, FromArgMatches as _};
 use renderer::component::{Component, ComponentSet};
 use renderer::crex::{self, Program, Setting};
-use renderer::film::Layers;
+use renderer::film::{Layers, Plane};
 use renderer::importance::map::ImportanceMap;
 use renderer::picture::{Input, Provenance, grey};
 use renderer::rad::RifView;
-use renderer::render::{RenderError, Renderer, Rendering, Settings, Snapshot};
+use renderer::render::{Account, RenderError, Renderer, Rendering, Settings, Snapshot};
 use renderer::scene::{Scene, View};
 use renderer::schedule::MonotonicClock;
 use renderer::transport::Limits;
@@ -130,20 +130,20 @@ impl Prepared {
         &self.scene
     }
 
+    /// The planes of the picture.
+    pub(crate) fn planes(&self) -> Vec<Plane> {
+        let Request { program, settings, .. } = &self.request;
+        renderer::render::planes(&self.scene, program, settings)
+    }
+
     /// Renders, with a bar on standard error; `show` gets the picture after every stage.
     pub(crate) fn render(&self, clock: &MonotonicClock, show: Option<Show<'_>>) -> Result<Rendering, Failure> {
-        let progress = Progress::new(clock);
-        let report = |fraction| progress.set(fraction);
         let smoothed = &self.request.filter;
-        let (rendering, planes) = self.with_renderer(clock, |renderer| {
-            let renderer = renderer.with_progress(&report);
-            match show {
-                Some(show) => renderer.render_stages(show).map(|rendering| (rendering, Vec::new())),
-                None if smoothed.is_empty() => renderer.render().map(|rendering| (rendering, Vec::new())),
-                None => renderer.render_smoothed(smoothed.iter().copied().collect()),
-            }
+        let (rendering, planes) = self.with_progress(clock, |renderer| match show {
+            Some(show) => renderer.render_stages(show).map(|rendering| (rendering, Vec::new())),
+            None if smoothed.is_empty() => renderer.render().map(|rendering| (rendering, Vec::new())),
+            None => renderer.render_smoothed(smoothed.iter().copied().collect()),
         })?;
-        progress.done();
         for plane in planes {
             let percent = [plane.noise_before, plane.noise_after].map(|noise| 100.0 * noise);
             console::say(
@@ -154,11 +154,29 @@ impl Prepared {
                 ),
             );
         }
-        for span in &rendering.stopped {
+        self.warn_of_stopped(&rendering.account());
+        Ok(rendering)
+    }
+
+    /// Warns of each `*` that was stopped before its rays ran out.
+    pub(super) fn warn_of_stopped(&self, account: &Account) {
+        for span in &account.stopped {
             let text = crex::Warning { message: "`*` was stopped after a million runs".to_owned(), span: *span };
             console::say("warning", &text.render(self.request.program.text()));
         }
-        Ok(rendering)
+    }
+
+    /// Does something with a renderer of what is asked for, with a bar on standard error.
+    pub(super) fn with_progress<T, E: Into<Failure>>(
+        &self,
+        clock: &MonotonicClock,
+        work: impl FnOnce(Renderer<'_>) -> Result<T, E>,
+    ) -> Result<T, Failure> {
+        let progress = Progress::new(clock);
+        let report = |fraction| progress.set(fraction);
+        let made = self.with_renderer(clock, |renderer| Ok(work(renderer.with_progress(&report))))?;
+        progress.done();
+        made.map_err(Into::into)
     }
 
     /// Does something with a renderer of what is asked for.
@@ -168,23 +186,19 @@ impl Prepared {
         work: impl FnOnce(Renderer<'_>) -> Result<T, RenderError>,
     ) -> Result<T, Failure> {
         let aggregate = self.scene.aggregate();
-        let refused = |error: RenderError| match error {
-            RenderError::Threads { .. } => Failure::Cannot(error.to_string()),
-            _ => Failure::input(error),
-        };
         let Request { program, view, settings, .. } = &self.request;
         let mut renderer =
-            Renderer::new(&self.scene, &aggregate, view, program, clock, settings.clone()).map_err(refused)?;
+            Renderer::new(&self.scene, &aggregate, view, program, clock, settings.clone()).map_err(Failure::from)?;
         if let Some(map) = &self.request.importance {
-            renderer = renderer.with_importance(map.values()).map_err(refused)?;
+            renderer = renderer.with_importance(map.values()).map_err(Failure::from)?;
         }
         if let Some(thresholds) = &self.request.thresholds {
-            renderer = renderer.with_thresholds(thresholds).map_err(refused)?;
+            renderer = renderer.with_thresholds(thresholds).map_err(Failure::from)?;
         }
         if self.request.continuous {
             renderer = renderer.with_continuous_importance();
         }
-        work(renderer).map_err(refused)
+        work(renderer).map_err(Failure::from)
     }
 
     /// What the scene was made from.
@@ -195,6 +209,15 @@ impl Prepared {
     /// The components that the scene can spawn.
     pub(crate) fn components(&self) -> ComponentSet {
         self.scene.components(self.request.settings.limits.glossy_threshold)
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Threads { .. } => Self::Cannot(error.to_string()),
+            _ => Self::input(error),
+        }
     }
 }
 
