@@ -52,6 +52,7 @@ const RENDERER_ARROWS: &[(&str, &[&str])] = &[
 /// A word of code and the only places (path prefixes below the project's root) that may say it.
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("obvhs::", &["renderer/src/geometry/aggregate.rs"]),
+    ("pulp::", &["renderer/src/geometry/lanes.rs"]),
     ("exr::", &["renderer/src/picture/"]),
     ("image::", &["renderer/src/picture/", "experiment/src/"]),
     ("egui::", &["experiment/src/app", "experiment/src/main.rs", "experiment/tests/"]),

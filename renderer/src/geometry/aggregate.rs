@@ -11,15 +11,22 @@ use glam::{DVec3, Vec3A};
 use obvhs::bvh2::Bvh2;
 use obvhs::{BvhBuildParams, aabb::Aabb};
 
+use super::block::{Part, fan};
+use super::lanes::Level;
+use super::line::Line;
 use super::outliers::outliers;
 use super::shape::{Probe, Shape};
-use super::wide::{Pair, Wide};
+use super::wide::Wide;
+use super::widen::{Pair, widen};
 use super::{Hit, Ray, SurfaceId};
 use crate::math::tolerance;
 
-/// Growth of every box, in a frame where the scene's half extent is 1. The slab test in `f32` errs by at most 5e-7 there:
+/// Growth of every box, in a frame where the scene's half extent is 1. The slab test in `f32` errs by at most 7e-7 there:
 /// three roundings (6e-8 each) of distances up to 2, and as much for the rounded origin and direction.
 const PADDING: f64 = 4e-6;
+
+/// Polygons of more vertices are met one by one.
+const MOST_VERTICES: usize = 6;
 
 /// What a surface does to a shadow ray that meets it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +88,7 @@ impl std::fmt::Debug for Aggregate {
 
 /// A ray within the bounds of the scene, in the hierarchy's frame.
 struct Entry {
-    ray: obvhs::ray::Ray,
+    line: Line,
     /// Distance from the real origin to the ray's.
     skipped: f64,
 }
@@ -90,6 +97,11 @@ impl Aggregate {
     /// Builds the hierarchy. Deterministic: the same items give the same tree.
     #[must_use]
     pub fn new(items: impl IntoIterator<Item = Item>) -> Self {
+        Self::at_level(items, Level::best())
+    }
+
+    /// The same, walked by the instructions of a level.
+    pub(super) fn at_level(items: impl IntoIterator<Item = Item>, level: Level) -> Self {
         let mut slots: Vec<Option<Item>> = items.into_iter().map(Some).collect();
         let bounds: Vec<[DVec3; 2]> = slots.iter().flatten().map(|item| item.shape.bounds()).collect();
         let (outliers, [low, high]) = outliers(&bounds);
@@ -111,17 +123,29 @@ impl Aggregate {
         let bvh = if boxes.is_empty() {
             Bvh2::default()
         } else {
-            obvhs::bvh2::builder::build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default())
+            // Leaves are made of what fits into blocks.
+            let build = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
+            obvhs::bvh2::builder::build_bvh2(&boxes, build, &mut Duration::default())
         };
         let pairs: Vec<Pair> = bvh
             .nodes
             .iter()
             .map(|node| {
                 let Aabb { min: low, max: high } = *node.aabb();
-                Pair { low, high, first: node.first_index, count: node.prim_count }
+                let is_leaf = node.prim_count > 0;
+                let first = if is_leaf { bvh.primitive_indices[node.first_index as usize] } else { node.first_index };
+                Pair { low, high, first, is_leaf }
             })
             .collect();
-        let order = bvh.primitive_indices.iter().map(|&at| inner[at as usize]).chain(outliers);
+        let parts = |slot: u32, found: &mut Vec<Part>| {
+            let item = slots[inner[slot as usize]].as_ref();
+            let Some(vertices) = item.and_then(|it| it.shape.vertices()).filter(|it| it.len() <= MOST_VERTICES) else {
+                return;
+            };
+            found.extend(fan(slot, vertices.iter().map(|&vertex| ((vertex - centre) / half_extent).as_vec3())));
+        };
+        let (bvh, order) = widen(&pairs, level, parts);
+        let order = order.into_iter().map(|at| inner[at as usize]).chain(outliers);
         let items: Vec<Item> = order.filter_map(|index| slots[index].take()).collect();
         let has = |passage| items.iter().any(|item| item.passage == passage);
         Self {
@@ -132,7 +156,7 @@ impl Aggregate {
             has_straight: has(Passage::Straight),
             has_refracting: has(Passage::Refracting),
             items,
-            bvh: Wide::new(&pairs),
+            bvh,
         }
     }
 
@@ -168,7 +192,7 @@ impl Aggregate {
         let window = tolerance::least_distance(ray.origin, self.radius);
         let mut best: Option<(f64, usize)> = None;
         let mut crowded = false;
-        let _ = self.walk(ray, |slot| {
+        let _ = self.walk::<true>(ray, &probe, |slot| {
             let item = &self.items[slot];
             let t_max = best.map_or(ray.t_max, |(t, _)| t + window);
             let met = item.shape.meet(&probe, ray.leaving == Some(item.surface), window, t_max);
@@ -180,7 +204,8 @@ impl Aggregate {
                 }
             }
             best = Some((t, slot));
-            ControlFlow::Continue(Some(t))
+            // What coincides with it counts, wherever its box begins.
+            ControlFlow::Continue(Some(t + window))
         });
         let (nearest, mut slot) = best?;
         if crowded {
@@ -194,7 +219,7 @@ impl Aggregate {
     pub fn occluded(&self, ray: &Ray, mut counts: impl FnMut(SurfaceId) -> bool) -> bool {
         let probe = Probe::new(ray.origin, ray.dir);
         let t_min = tolerance::least_distance(ray.origin, self.radius);
-        let walk = self.walk(ray, |slot| {
+        let walk = self.walk::<false>(ray, &probe, |slot| {
             let item = &self.items[slot];
             let found = counts(item.surface)
                 && item.shape.meet(&probe, ray.leaving == Some(item.surface), t_min, ray.t_max).is_some();
@@ -213,7 +238,7 @@ impl Aggregate {
         let window = tolerance::least_distance(ray.origin, self.radius);
         let mut blocked_at = f64::INFINITY;
         let mut bent_at = f64::INFINITY;
-        let _ = self.walk(ray, |slot| {
+        let _ = self.walk::<false>(ray, &probe, |slot| {
             let item = &self.items[slot];
             if Some(item.surface) == target {
                 return ControlFlow::Continue(None);
@@ -276,7 +301,7 @@ impl Aggregate {
     fn preferred(&self, ray: &Ray, probe: &Probe, nearest: f64, window: f64) -> Option<usize> {
         let t_max = (nearest + window).next_up().min(ray.t_max);
         let mut best: Option<((bool, bool, u32, SurfaceId), usize)> = None;
-        let _ = self.walk(&ray.up_to(t_max), |slot| {
+        let _ = self.walk::<false>(&ray.up_to(t_max), probe, |slot| {
             let item = &self.items[slot];
             if let Some(t) = item.shape.meet(probe, ray.leaving == Some(item.surface), window, t_max) {
                 let front = self.hit(ray, t, slot).is_front(ray.dir);
@@ -302,15 +327,17 @@ impl Aggregate {
     }
 
     /// Moves the ray to the point where it enters the padded bounds, and into the hierarchy's frame.
-    fn enter(&self, ray: &Ray) -> Option<Entry> {
+    #[inline]
+    fn enter(&self, ray: &Ray, probe: &Probe, t_max: f64) -> Option<Entry> {
         if self.in_bvh == 0 {
             return None;
         }
         // Where the origin is outside, its `f32` image could be off by more than the padding.
         let reach = self.half_extent * (1.0 + 2.0 * PADDING);
         let from_centre = ray.origin - self.centre;
-        let (mut skipped, mut last) = (0.0_f64, ray.t_max);
+        let (mut skipped, mut error) = (0.0_f64, 0.0);
         if from_centre.abs().max_element() > reach {
+            let mut last = t_max;
             let inverse = ray.dir.recip();
             let (to_low, to_high) = ((-from_centre - reach) * inverse, (-from_centre + reach) * inverse);
             for (low, high) in to_low.to_array().into_iter().zip(to_high.to_array()) {
@@ -324,27 +351,31 @@ impl Aggregate {
                 return None;
             }
             skipped = (skipped - rounding).max(0.0);
+            error = 2.0 * rounding / self.half_extent;
         }
         let origin = (from_centre + ray.dir * skipped) / self.half_extent;
-        let mut entry = Entry { ray: obvhs::ray::Ray::new_inf(origin.as_vec3a(), ray.dir.as_vec3a()), skipped };
-        entry.ray.tmax = entry.limit(ray.t_max, self.half_extent);
+        let mut entry = Entry { line: Line::new(origin, ray.dir, probe, error)?, skipped };
+        entry.line.t_max = entry.limit(t_max, self.half_extent);
         Some(entry)
     }
 
-    /// Offers every item that the ray may meet to `visit`, which answers with the distance beyond which nothing matters any more, if that
-    /// fell, or stops the walk.
-    fn walk(&self, ray: &Ray, mut visit: impl FnMut(usize) -> ControlFlow<(), Option<f64>>) -> ControlFlow<()> {
+    /// Offers every item that the ray may meet to `visit`, if `ORDERED` about nearest first. It answers with the distance beyond
+    /// which nothing matters any more, if that fell, or stops the walk.
+    #[inline]
+    fn walk<const ORDERED: bool>(
+        &self,
+        ray: &Ray,
+        probe: &Probe,
+        mut visit: impl FnMut(usize) -> ControlFlow<(), Option<f64>>,
+    ) -> ControlFlow<()> {
         let mut t_max = ray.t_max;
         for slot in self.in_bvh..self.items.len() {
             t_max = visit(slot)?.unwrap_or(t_max);
         }
-        let Some(entry) = self.enter(&ray.up_to(t_max)) else { return ControlFlow::Continue(()) };
-        let obvhs::ray::Ray { origin, inv_direction, tmax, .. } = entry.ray;
-        self.bvh.walk(origin, inv_direction, tmax, |slots, t_max| {
-            for slot in slots {
-                if let Some(t) = visit(slot)? {
-                    *t_max = entry.limit(t, self.half_extent);
-                }
+        let Some(entry) = self.enter(ray, probe, t_max) else { return ControlFlow::Continue(()) };
+        self.bvh.walk::<ORDERED>(&entry.line, |slot, t_max| {
+            if let Some(t) = visit(slot)? {
+                *t_max = entry.limit(t, self.half_extent);
             }
             ControlFlow::Continue(())
         })

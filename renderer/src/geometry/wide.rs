@@ -1,41 +1,80 @@
-//! A hierarchy with four boxes in each node, all tested at once: half as deep as one of pairs, and no sum across a vector.
+//! A hierarchy with eight boxes in each node, and eight triangles in each leaf, all tested at once.
 
 use std::ops::ControlFlow;
 
-use glam::{Vec3A, Vec4};
+use super::block::Block;
+use super::lanes::{Lanes, Level, Task};
+use super::line::Line;
 
-/// A node of a hierarchy of pairs.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
-    /// Corners of its box.
-    pub(super) low: Vec3A,
-    pub(super) high: Vec3A,
-    /// Of a leaf the first item, else the first of the two children, which follow each other.
-    pub(super) first: u32,
-    /// Items of a leaf; 0 if it has children.
-    pub(super) count: u32,
-}
+/// Boxes in a node.
+pub(super) const WIDTH: usize = 8;
 
-impl Pair {
-    fn half_area(&self) -> f32 {
-        let size = self.high - self.low;
-        size.x * size.y + size.y * size.z + size.z * size.x
+/// What can wait in most hierarchies, and in all that are not uncommonly deep.
+const WAITING: [usize; 2] = [64, 256];
+
+/// Where a box leads.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Link(u32);
+
+impl Link {
+    const BLOCK: u32 = 1 << 30;
+    const SINGLE: u32 = 1 << 31;
+
+    /// To a node.
+    pub(super) fn node(index: usize) -> Self {
+        Self::new(0, index)
+    }
+
+    /// To a block.
+    pub(super) fn block(index: usize) -> Self {
+        Self::new(Self::BLOCK, index)
+    }
+
+    /// To a shape that is in no block.
+    pub(super) fn single(slot: usize) -> Self {
+        Self::new(Self::SINGLE, slot)
+    }
+
+    fn new(kind: u32, index: usize) -> Self {
+        let index = u32::try_from(index).ok().filter(|&index| index < Self::BLOCK);
+        Self(kind | index.expect("a scene of 2^30 shapes fits no memory"))
+    }
+
+    #[inline(always)]
+    fn index(self) -> usize {
+        (self.0 & (Self::BLOCK - 1)) as usize
     }
 }
 
-/// Where a box leads: to the node `first`, or if `count` is not 0 to the items `first..first + count`.
-#[derive(Clone, Copy, Debug, Default)]
-struct Link {
-    first: u32,
-    count: u32,
+/// Up to eight boxes; what is absent no ray meets.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Node {
+    /// Low and high end of x, of y, and of z.
+    planes: [[f32; WIDTH]; 6],
+    links: [Link; WIDTH],
 }
 
-/// Up to four boxes; what is absent lies at infinity, where no ray meets it.
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    low: [Vec4; 3],
-    high: [Vec4; 3],
-    links: [Link; 4],
+impl Node {
+    /// A node without boxes.
+    pub(super) fn empty() -> Self {
+        let (low, high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
+        Self { planes: [low, high, low, high, low, high], links: [Link::default(); WIDTH] }
+    }
+
+    /// Puts a box into a lane.
+    pub(super) fn set(&mut self, lane: usize, low: [f32; 3], high: [f32; 3], link: Link) {
+        for axis in 0..3 {
+            self.planes[2 * axis][lane] = low[axis];
+            self.planes[2 * axis + 1][lane] = high[axis];
+        }
+        self.link_to(lane, link);
+    }
+
+    /// Makes a lane lead elsewhere.
+    pub(super) fn link_to(&mut self, lane: usize, link: Link) {
+        self.links[lane] = link;
+    }
 }
 
 /// What waits to be looked at, with the distance of its box.
@@ -45,138 +84,143 @@ struct Waiting {
     link: Link,
 }
 
-/// The hierarchy.
+/// The hierarchy. Its first node is the root.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Wide {
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) blocks: Vec<Block>,
     /// Most that can wait at once.
-    most_waiting: usize,
+    pub(super) most_waiting: usize,
+    /// By which instructions it is walked.
+    pub(super) level: Level,
 }
 
 impl Wide {
-    /// Brings a hierarchy of pairs, whose root is its first node, into nodes of four.
-    pub(super) fn new(pairs: &[Pair]) -> Self {
-        let mut wide = Self::default();
-        let Some(root) = pairs.first() else { return wide };
-        let mut children = vec![if root.count > 0 { vec![*root] } else { split(pairs, root) }];
-        let mut depths = vec![1];
-        let mut next = 0;
-        // Breadth first: a node's links are known before the nodes themselves.
-        while next < children.len() {
-            let mut node = Node { low: [Vec4::INFINITY; 3], high: [Vec4::INFINITY; 3], links: [Link::default(); 4] };
-            for (lane, child) in std::mem::take(&mut children[next]).iter().enumerate() {
-                for axis in 0..3 {
-                    node.low[axis][lane] = child.low[axis];
-                    node.high[axis][lane] = child.high[axis];
-                }
-                node.links[lane] = Link { first: child.first, count: child.count };
-                if child.count == 0 {
-                    node.links[lane].first = u32::try_from(children.len()).expect("fewer nodes than pairs");
-                    children.push(split(pairs, child));
-                    depths.push(depths[next] + 1);
-                }
-            }
-            wide.nodes.push(node);
-            next += 1;
-        }
-        // Each node that is gone through leaves at most three of its boxes behind.
-        wide.most_waiting = 3 * depths.iter().max().copied().unwrap_or(0) + 1;
-        wide
-    }
-
-    /// Offers the items of every leaf whose box the ray meets before `t_max` to `visit`, about nearest first. It may lower
-    /// `t_max`, or stop the walk. `inverse` is one over the direction, finite.
-    #[inline]
-    pub(super) fn walk(
+    /// Offers every shape that the ray may meet before the line's end to `visit`, which may bring the end nearer, or stop the walk.
+    /// If `ORDERED`, about nearest first.
+    #[inline(always)]
+    pub(super) fn walk<const ORDERED: bool>(
         &self,
-        origin: Vec3A,
-        inverse: Vec3A,
-        t_max: f32,
-        visit: impl FnMut(std::ops::Range<usize>, &mut f32) -> ControlFlow<()>,
+        line: &Line,
+        visit: impl FnMut(usize, &mut f32) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        // What waits lies on the stack unless the hierarchy is uncommonly deep.
-        if self.most_waiting <= 64 {
-            self.walk_in(&mut [Waiting::default(); 64], origin, inverse, t_max, visit)
-        } else if self.most_waiting <= 256 {
-            self.walk_in(&mut [Waiting::default(); 256], origin, inverse, t_max, visit)
-        } else {
-            self.walk_in(&mut vec![Waiting::default(); self.most_waiting], origin, inverse, t_max, visit)
-        }
-    }
-
-    #[inline]
-    fn walk_in(
-        &self,
-        waiting: &mut [Waiting],
-        origin: Vec3A,
-        inverse: Vec3A,
-        mut t_max: f32,
-        mut visit: impl FnMut(std::ops::Range<usize>, &mut f32) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        let origin = [Vec4::splat(origin.x), Vec4::splat(origin.y), Vec4::splat(origin.z)];
-        let inverse = [Vec4::splat(inverse.x), Vec4::splat(inverse.y), Vec4::splat(inverse.z)];
         if self.nodes.is_empty() {
             return ControlFlow::Continue(());
         }
-        waiting[0] = Waiting::default();
-        let mut count = 1;
-        while count > 0 {
-            count -= 1;
-            let Waiting { near, link } = waiting[count];
-            if near >= t_max {
-                continue;
-            }
-            if link.count > 0 {
-                let first = link.first as usize;
-                visit(first..first + link.count as usize, &mut t_max)?;
-                continue;
-            }
-            let node = &self.nodes[link.first as usize];
-            let (near, mut met) = node.meet(&origin, &inverse, t_max);
-            let bottom = count;
-            while met != 0 {
-                let lane = met.trailing_zeros() as usize;
-                met &= met - 1;
-                // The nearest is looked at first: it goes on top.
-                let (mut at, near) = (count, near[lane]);
-                while at > bottom && waiting[at - 1].near < near {
-                    waiting[at] = waiting[at - 1];
-                    at -= 1;
+        self.level.run(Walk::<ORDERED, _> { wide: self, line, visit })
+    }
+}
+
+struct Walk<'a, const ORDERED: bool, V> {
+    wide: &'a Wide,
+    line: &'a Line,
+    visit: V,
+}
+
+impl<const ORDERED: bool, V: FnMut(usize, &mut f32) -> ControlFlow<()>> Task for Walk<'_, ORDERED, V> {
+    type Answer = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self, lanes: L) -> ControlFlow<()> {
+        let Self { wide, line, .. } = self;
+        let (mut short, mut middle, mut long);
+        let waiting: &mut [Waiting] = if wide.most_waiting <= WAITING[0] {
+            short = [Waiting::default(); WAITING[0]];
+            &mut short
+        } else if wide.most_waiting <= WAITING[1] {
+            middle = [Waiting::default(); WAITING[1]];
+            &mut middle
+        } else {
+            long = vec![Waiting::default(); wide.most_waiting];
+            &mut long
+        };
+        // No closures over lanes here, nor `map`: they might be compiled apart, without the lanes' instructions.
+        let [x, y, z] = line.inverse;
+        let inverse = [lanes.splat(x), lanes.splat(y), lanes.splat(z)];
+        let [from_x, from_y, from_z] = line.origin;
+        let shift = [lanes.splat(-from_x * x), lanes.splat(-from_y * y), lanes.splat(-from_z * z)];
+        // Which end of a box the ray comes to first.
+        let first = [usize::from(x < 0.0), 2 + usize::from(y < 0.0), 4 + usize::from(z < 0.0)];
+        let mut t_max = line.t_max;
+        let mut link = Link::default();
+        let mut count = 0;
+        loop {
+            if link.0 < Link::BLOCK {
+                let node = &wide.nodes[link.index()];
+                let near = [
+                    lanes.mul_add(lanes.load(&node.planes[first[0]]), inverse[0], shift[0]),
+                    lanes.mul_add(lanes.load(&node.planes[first[1]]), inverse[1], shift[1]),
+                    lanes.mul_add(lanes.load(&node.planes[first[2]]), inverse[2], shift[2]),
+                ];
+                let far = [
+                    lanes.mul_add(lanes.load(&node.planes[first[0] ^ 1]), inverse[0], shift[0]),
+                    lanes.mul_add(lanes.load(&node.planes[first[1] ^ 1]), inverse[1], shift[1]),
+                    lanes.mul_add(lanes.load(&node.planes[first[2] ^ 1]), inverse[2], shift[2]),
+                ];
+                let near = lanes.max(lanes.max(near[0], near[1]), lanes.max(near[2], lanes.splat(0.0)));
+                let far = lanes.min(lanes.min(far[0], far[1]), lanes.min(far[2], lanes.splat(t_max)));
+                let mut met = lanes.at_least(far, near);
+                if met != 0 {
+                    let lane = met.trailing_zeros() as usize;
+                    met &= met - 1;
+                    if met == 0 {
+                        link = node.links[lane];
+                        continue;
+                    }
+                    let near = lanes.store(near);
+                    let other = met.trailing_zeros() as usize;
+                    met &= met - 1;
+                    // The nearest is looked at first, the others wait, the next nearest on top.
+                    let swap = ORDERED && near[other] < near[lane];
+                    let (mut nearest, other) = if swap { (other, lane) } else { (lane, other) };
+                    let bottom = count;
+                    waiting[count] = Waiting { near: near[other], link: node.links[other] };
+                    count += 1;
+                    while met != 0 {
+                        let mut lane = met.trailing_zeros() as usize;
+                        met &= met - 1;
+                        let mut at = count;
+                        if ORDERED {
+                            if near[lane] < near[nearest] {
+                                std::mem::swap(&mut lane, &mut nearest);
+                            }
+                            while at > bottom && waiting[at - 1].near < near[lane] {
+                                waiting[at] = waiting[at - 1];
+                                at -= 1;
+                            }
+                        }
+                        waiting[at] = Waiting { near: near[lane], link: node.links[lane] };
+                        count += 1;
+                    }
+                    link = node.links[nearest];
+                    continue;
                 }
-                waiting[at] = Waiting { near, link: node.links[lane] };
-                count += 1;
+            } else if link.0 < Link::SINGLE {
+                let block = &wide.blocks[link.index()];
+                let mut met = block.meet(lanes, line, t_max);
+                let mut last = u32::MAX;
+                while met != 0 {
+                    let slot = block.slots[met.trailing_zeros() as usize];
+                    met &= met - 1;
+                    if slot != last {
+                        (self.visit)(slot as usize, &mut t_max)?;
+                    }
+                    last = slot;
+                }
+            } else {
+                (self.visit)(link.index(), &mut t_max)?;
             }
+            // The next that is not behind what was met.
+            loop {
+                if count == 0 {
+                    return ControlFlow::Continue(());
+                }
+                count -= 1;
+                if waiting[count].near <= t_max {
+                    break;
+                }
+            }
+            link = waiting[count].link;
         }
-        ControlFlow::Continue(())
     }
-}
-
-impl Node {
-    /// At what distances the ray enters the boxes, and which of them it meets before `t_max`, a bit for each.
-    #[inline]
-    fn meet(&self, origin: &[Vec4; 3], inverse: &[Vec4; 3], t_max: f32) -> ([f32; 4], u32) {
-        let mut near = Vec4::NEG_INFINITY;
-        let mut far = Vec4::INFINITY;
-        for axis in 0..3 {
-            let to_low = (self.low[axis] - origin[axis]) * inverse[axis];
-            let to_high = (self.high[axis] - origin[axis]) * inverse[axis];
-            near = near.max(to_low.min(to_high));
-            far = far.min(to_low.max(to_high));
-        }
-        let met = far.cmpge(near) & far.cmpge(Vec4::ZERO) & near.cmplt(Vec4::splat(t_max));
-        (near.to_array(), met.bitmask())
-    }
-}
-
-/// Up to four nodes below one that has children: the largest are opened first, since rays meet them most.
-fn split(pairs: &[Pair], parent: &Pair) -> Vec<Pair> {
-    let below = |parent: &Pair| [pairs[parent.first as usize], pairs[parent.first as usize + 1]];
-    let mut children = below(parent).to_vec();
-    while children.len() < 4 {
-        let open = children.iter().enumerate().filter(|(_, child)| child.count == 0);
-        let Some((index, _)) = open.max_by(|(_, a), (_, b)| a.half_area().total_cmp(&b.half_area())) else { break };
-        let opened = children.swap_remove(index);
-        children.extend(below(&opened));
-    }
-    children
 }

@@ -121,6 +121,16 @@ impl Shape {
         }
     }
 
+    /// The outline of what is bounded by straight edges.
+    #[must_use]
+    pub fn vertices(&self) -> Option<&[DVec3]> {
+        match self {
+            Self::Triangle(triangle) => Some(triangle.vertices()),
+            Self::Polygon(polygon) => Some(polygon.vertices()),
+            Self::Sphere(_) | Self::Cone(_) | Self::Ring(_) | Self::Placed(_) => None,
+        }
+    }
+
     /// Whether all of it lies in a plane.
     #[must_use]
     pub fn is_flat(&self) -> bool {

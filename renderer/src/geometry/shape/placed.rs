@@ -11,7 +11,12 @@ use crate::math::Similarity;
 
 /// A placed set of shapes. Their surfaces have consecutive numbers in the scene.
 #[derive(Clone)]
-pub struct Placed {
+pub struct Placed(
+    /// Apart, so that a shape of another kind takes no more room than it needs.
+    Arc<Place>,
+);
+
+struct Place {
     group: Arc<Aggregate>,
     to_scene: Similarity,
     to_group: Similarity,
@@ -21,13 +26,15 @@ pub struct Placed {
 
 impl fmt::Debug for Placed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} shapes placed by {:?}", self.group.len(), self.to_scene)
+        write!(f, "{} shapes placed by {:?}", self.0.group.len(), self.0.to_scene)
     }
 }
 
 impl PartialEq for Placed {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.group, &other.group) && self.to_scene == other.to_scene && self.first == other.first
+        Arc::ptr_eq(&self.0.group, &other.0.group)
+            && self.0.to_scene == other.0.to_scene
+            && self.0.first == other.0.first
     }
 }
 
@@ -42,26 +49,26 @@ impl Placed {
         let bounds = (0..8)
             .map(corner)
             .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], corner| [low.min(corner), high.max(corner)]);
-        Self { group, to_group: to_scene.inverse(), to_scene, first, bounds }
+        Self(Arc::new(Place { group, to_group: to_scene.inverse(), to_scene, first, bounds }))
     }
 
     /// From the scene's coordinates to the group's own.
     #[must_use]
     pub fn to_group(&self) -> &Similarity {
-        &self.to_group
+        &self.0.to_group
     }
 
     /// Number of its first surface.
     #[must_use]
     pub fn first(&self) -> u32 {
-        self.first
+        self.0.first
     }
 
     /// The nearest hit beyond `t_min`, in the group's coordinates but for its distance.
     fn nearest(&self, origin: DVec3, dir: DVec3, t_min: f64, t_max: f64) -> Option<Hit> {
-        let scale = self.to_group.scale;
-        let ray = Ray::new(self.to_group.point(origin + dir * t_min), self.to_group.direction(dir).normalize());
-        let hit = self.group.closest(&ray.up_to((t_max - t_min) * scale))?;
+        let scale = self.0.to_group.scale;
+        let ray = Ray::new(self.0.to_group.point(origin + dir * t_min), self.0.to_group.direction(dir).normalize());
+        let hit = self.0.group.closest(&ray.up_to((t_max - t_min) * scale))?;
         let t = t_min + hit.t / scale;
         (t > t_min && t < t_max).then_some(Hit { t, ..hit })
     }
@@ -76,13 +83,13 @@ impl Placed {
         let hit = self.nearest(ray.origin, ray.dir, t_min, f64::INFINITY)?;
         Some(Hit {
             t: hit.t,
-            point: self.to_scene.point(hit.point),
-            normal: self.to_scene.direction(hit.normal).normalize(),
-            surface: SurfaceId(self.first + hit.surface.0),
+            point: self.0.to_scene.point(hit.point),
+            normal: self.0.to_scene.direction(hit.normal).normalize(),
+            surface: SurfaceId(self.0.first + hit.surface.0),
         })
     }
 
     pub(super) fn bounds(&self) -> [DVec3; 2] {
-        self.bounds
+        self.0.bounds
     }
 }

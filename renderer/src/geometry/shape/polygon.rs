@@ -38,6 +38,18 @@ fn crosses(from: DVec2, to: DVec2) -> bool {
     low.x * high.y > high.x * low.y
 }
 
+/// The smaller of two numbers; not `min`, which takes care of what is none.
+#[inline]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers.
+#[inline]
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// Where the ray meets the plane through `point`, kept within the polygon's own range of depths, without which a
 /// grazing ray would find a meaningless distance.
 #[inline]
@@ -60,6 +72,10 @@ impl Triangle {
         self.corners
     }
 
+    pub(super) fn vertices(&self) -> &[DVec3] {
+        &self.corners
+    }
+
     fn doubled_area_vector(&self) -> DVec3 {
         (self.corners[1] - self.corners[0]).cross(self.corners[2] - self.corners[0])
     }
@@ -70,6 +86,7 @@ impl Triangle {
         unit(self.doubled_area_vector())
     }
 
+    #[inline]
     pub(super) fn meet(&self, probe: &Probe, t_min: f64, t_max: f64) -> Option<f64> {
         let inside = match probe.axis() {
             0 => self.is_met::<0>(probe),
@@ -80,7 +97,7 @@ impl Triangle {
             return None;
         }
         let [a, b, c] = self.corners.map(|corner| probe.depth(corner));
-        let (nearest, furthest) = (a.min(b).min(c), a.max(b).max(c));
+        let (nearest, furthest) = (least(least(a, b), c), most(most(a, b), c));
         within(plane_distance(probe, self.corners[0], self.doubled_area_vector(), nearest, furthest), t_min, t_max)
     }
 
@@ -153,8 +170,8 @@ impl Polygon {
         let (mut nearest, mut furthest) = (f64::INFINITY, f64::NEG_INFINITY);
         for &vertex in &*self.vertices {
             let depth = probe.depth(vertex);
-            nearest = nearest.min(depth);
-            furthest = furthest.max(depth);
+            nearest = least(nearest, depth);
+            furthest = most(furthest, depth);
         }
         within(plane_distance(probe, self.point, self.normal, nearest, furthest), t_min, t_max)
     }

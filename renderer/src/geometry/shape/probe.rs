@@ -41,6 +41,14 @@ impl Probe {
         self.axes[2]
     }
 
+    /// The two axes across the ray and the one along which it travels furthest; and what it moves along the first two for each
+    /// unit of the third.
+    #[inline]
+    #[must_use]
+    pub(crate) fn shear(&self) -> ([usize; 3], [f64; 2]) {
+        (self.axes, self.shear.to_array())
+    }
+
     /// A point as the ray sees it: its two coordinates across, the ray passing through zero. `AXIS` is the ray's
     /// [`Self::axis`].
     #[inline]

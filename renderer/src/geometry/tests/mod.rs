@@ -6,6 +6,7 @@ use super::*;
 use crate::math::tolerance;
 
 mod extremes;
+mod levels;
 
 fn item(shape: Shape, index: usize) -> Item {
     Item { shape, surface: SurfaceId(index as u32), passage: Passage::Opaque, precedence: 0 }
