@@ -15,14 +15,16 @@ pub(super) const CORNER_ERROR: f32 = 4e-6;
 
 /// The triangles, and whose they are: a polygon is there as a [`fan`].
 #[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
+#[repr(align(64))]
 pub(super) struct Block {
     /// By corner and axis.
     corners: [[[f32; LANES]; 3]; 3],
-    /// How much further along a ray its hit may lie than the triangle's own corners.
-    reach: [f32; LANES],
-    /// Where the shapes are; the lanes of one follow each other. Spare lanes repeat the last.
-    pub(super) slots: [u32; LANES],
+    /// How much further along a ray a hit may lie than a triangle's own corners.
+    reach: f32,
+    /// Where the first lane's shape is, and how much further on those of the lanes are; the lanes of one follow each other. Spare
+    /// lanes repeat the last.
+    first: u32,
+    further: [u8; LANES],
 }
 
 /// A triangle that stands for a shape, or for a part of one.
@@ -47,13 +49,13 @@ pub(super) fn fan(slot: u32, vertices: impl ExactSizeIterator<Item = Vec3> + Clo
 }
 
 impl Block {
-    /// A block of at least one and at most eight triangles.
+    /// A block of at least one and at most eight triangles, of shapes that follow each other.
     pub(super) fn new(parts: &[Part]) -> Self {
-        let mut block = Self { corners: [[[0.0; LANES]; 3]; 3], reach: [0.0; LANES], slots: [0; LANES] };
+        let reach = parts.iter().map(|part| part.reach).fold(0.0, f32::max) + CORNER_ERROR;
+        let mut block = Self { corners: [[[0.0; LANES]; 3]; 3], reach, first: parts[0].slot, further: [0; LANES] };
         for lane in 0..LANES {
             let part = parts[lane.min(parts.len() - 1)];
-            block.slots[lane] = part.slot;
-            block.reach[lane] = part.reach + CORNER_ERROR;
+            block.further[lane] = (part.slot - block.first) as u8;
             for (to, corner) in block.corners.iter_mut().zip(part.corners) {
                 for axis in 0..3 {
                     to[axis][lane] = corner[axis];
@@ -61,6 +63,12 @@ impl Block {
             }
         }
         block
+    }
+
+    /// Where the shape of a lane is.
+    #[inline(always)]
+    pub(super) fn slot(&self, lane: usize) -> u32 {
+        self.first + u32::from(self.further[lane])
     }
 
     /// Which of the triangles the ray may meet before `t_max`, a bit for each: all that it does meet, and a few others.
@@ -84,7 +92,7 @@ impl Block {
         let zero = lanes.splat(0.0);
         let outside = lanes.greater(lanes.sub(zero, error), least) & lanes.greater(most, error);
         // The shape's hit lies between the depths of its vertices.
-        let [reach, scale] = [lanes.load(&self.reach), lanes.splat(line.inverse[line.axes[2]])];
+        let [reach, scale] = [lanes.splat(self.reach), lanes.splat(line.inverse[line.axes[2]])];
         let (one, other) = (lanes.min(lanes.min(a[2], b[2]), c[2]), lanes.max(lanes.max(a[2], b[2]), c[2]));
         let one = lanes.mul(lanes.sub(one, reach), scale);
         let other = lanes.mul(lanes.add(other, reach), scale);

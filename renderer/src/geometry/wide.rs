@@ -200,7 +200,7 @@ impl<const ORDERED: bool, V: FnMut(usize, &mut f32) -> ControlFlow<()>> Task for
                 let mut met = block.meet(lanes, line, t_max);
                 let mut last = u32::MAX;
                 while met != 0 {
-                    let slot = block.slots[met.trailing_zeros() as usize];
+                    let slot = block.slot(met.trailing_zeros() as usize);
                     met &= met - 1;
                     if slot != last {
                         (self.visit)(slot as usize, &mut t_max)?;
