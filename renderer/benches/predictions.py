@@ -4,14 +4,18 @@
     python3 renderer/benches/predictions.py table3 --crex target/release/crex --out table3 [--frames 180]
     python3 renderer/benches/predictions.py figures --crex target/release/crex --out figures [--size 1200]
 
-table3: for each component the error of the predicted seconds, |predicted - true| / true, over all runs of the component:
-Cornell box and corridor from an empty cache, the library over a walk of frames with the cache of ten frames of 256 x 179.
+table3: for each component the error of the predicted seconds, |predicted - true| / true, of its runs in a picture together,
+averaged over pictures. By the paper's rules: Cornell box and corridor from an empty cache, the library over a walk of frames
+with the cache of ten frames of 256 x 179, which is kept as it is. Then of all tasks (single components, or [ ] with all its
+members) the part that ended within the bound that they were admitted by, which is to be 95 %. Tasks of less than 1000 rays are
+left out.
 figures: the time of the whole crex first, then bounds that are parts of it: what ran, how long it took, and what was
 predicted. Both skip what they have already in their folder.
 """
 import argparse
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -43,19 +47,45 @@ def render(args, name, scene, crex, more, size):
         return json.load(file)
 
 
-def errors(stats, into):
+def tasks(stats):
+    """Predicted, bound and true seconds of the tasks that ran, with their letters."""
+    last = None
     for row in stats["stages"]:
-        if row["predicted_s"] and not row["skipped"] and row["rays"] >= 1000:
-            into.setdefault(row["stage"], []).append(abs(row["predicted_s"] - row["seconds"]) / row["seconds"])
+        if row["predicted_s"] is None or row["skipped"]:
+            last = None
+            continue
+        key = (row["group"], row["predicted_s"], row["bound_s"])
+        if row["group"] and last and last[0] == key:
+            last[1]["true"] += row["seconds"]
+            last[1]["rays"] += row["rays"]
+            last[1]["letters"] += row["stage"]
+        else:
+            last = (key, dict(letters=row["stage"], rays=row["rays"], predicted=row["predicted_s"], bound=row["bound_s"],
+                              true=row["seconds"]))
+            yield last[1]
+
+
+def errors(stats, into, held):
+    found = {}
+    for task in list(tasks(stats)):
+        if task["rays"] < 1000:
+            continue
+        held.append(task["true"] <= task["bound"])
+        # A group's prediction is of all its members together, and counts for each.
+        for letter in set(task["letters"]):
+            predicted, true = found.get(letter, (0.0, 0.0))
+            found[letter] = (predicted + task["predicted"], true + task["true"])
+    for letter, (predicted, true) in found.items():
+        into.setdefault(letter, []).append(abs(predicted - true) / true)
 
 
 def table3(args):
-    found = []
+    found, held = [], []
     for name, scene in (("cornell", CORNELL), ("corridor", CORRIDOR)):
         into = {}
         for seed in range(args.repeats):
             more = ["--time", str(args.time), "--seed", str(seed)]
-            errors(render(args, f"{name}{seed}", scene, "(TRSMGD)3", more, (args.size, args.size)), into)
+            errors(render(args, f"{name}{seed}", scene, "(TRSMGD)3", more, (args.size, args.size)), into, held)
         found.append(into)
     into = {}
     profile = os.path.join(args.out, "library.profile.json")
@@ -63,12 +93,15 @@ def table3(args):
         views = [line.split()[1:] for line in file if line.startswith("rvu")]
     for frame in range(10):
         scene = (LIBRARY[0], views[frame * len(views) // 10])
-        more = ["--time", "4", "--profile", profile]
+        more = ["--time", "4", "--profile", profile, "-pa", "0"]
         render(args, f"first{frame}", scene, "(TT[RS]G)3D", more, (256, 179))
+    # The paper did not let the frames improve the cache.
+    copy = os.path.join(args.out, "copy.profile.json")
     for frame in range(args.frames):
         scene = (LIBRARY[0], views[frame * len(views) // args.frames])
-        more = ["--time", str(args.time), "--profile", profile]
-        errors(render(args, f"frame{frame}", scene, "(TT[RS]G)3D", more, (args.size, args.size)), into)
+        shutil.copyfile(profile, copy)
+        more = ["--time", str(args.time), "--profile", copy]
+        errors(render(args, f"frame{frame}", scene, "(TT[RS]G)3D", more, (args.size, args.size)), into, held)
     found.append(into)
     print("| component | Cornell box | corridor | library |\n|---|---|---|---|")
     every = []
@@ -83,6 +116,8 @@ def table3(args):
         print(f"| {letter} | {' | '.join(cells)} |")
     if every:
         print(f"\nmedian {statistics.median(every):.1f} %, worst {max(every):.1f} % (paper 13 %, 40 %)")
+    if held:
+        print(f"{100 * sum(held) / len(held):.1f} % of {len(held)} tasks ended within their bound of 95 %")
 
 
 def figures(args):
@@ -106,7 +141,7 @@ def main():
     parser.add_argument("--size", type=int, default=None)
     parser.add_argument("--frames", type=int, default=180)
     parser.add_argument("--repeats", type=int, default=5)
-    parser.add_argument("--time", type=float, default=20.0)
+    parser.add_argument("--time", type=float, default=10.0, help="seconds for each picture of table3: enough for all tasks")
     args = parser.parse_args()
     args.size = args.size or (1200 if args.what == "figures" else 512)
     os.makedirs(args.out, exist_ok=True)

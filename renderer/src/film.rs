@@ -58,50 +58,56 @@ impl fmt::Display for Plane {
 #[derive(Clone, Debug, Default)]
 pub struct Planes {
     pixels: usize,
-    direct: Vec<Rgb>,
-    layers: PerComponent<Vec<Rgb>>,
-    ambient: Vec<Rgb>,
+    /// Of each plane that there is, how many come before it.
+    layers: PerComponent<Option<usize>>,
+    ambient: Option<usize>,
+    /// All planes one after the other, first the direct one: one piece of memory, since a picture has thousands of these.
+    sums: Vec<Rgb>,
 }
 
 impl Planes {
     /// Makes all planes black, with room for `pixels`; only the layers of `components`, and the ambient plane if it is
     /// `ambient`, can be added to afterwards. Allocates only if they grow.
     pub fn clear(&mut self, pixels: usize, components: ComponentSet, ambient: bool) {
-        self.pixels = pixels;
-        let reset = |plane: &mut Vec<Rgb>, present: bool| {
-            plane.clear();
-            plane.resize(if present { pixels } else { 0 }, Rgb::ZERO);
+        let mut planes = 1;
+        let mut place = |present: bool| {
+            planes += usize::from(present);
+            present.then(|| planes - 1)
         };
-        reset(&mut self.direct, true);
-        for (component, plane) in self.layers.iter_mut() {
-            reset(plane, components.contains(component));
-        }
-        reset(&mut self.ambient, ambient);
+        let layers = PerComponent::from_fn(|component| place(components.contains(component)));
+        let ambient = place(ambient);
+        (self.pixels, self.layers, self.ambient) = (pixels, layers, ambient);
+        self.sums.clear();
+        self.sums.resize(planes * pixels, Rgb::ZERO);
     }
 
     /// Makes all planes black, with room for what another has room for.
     pub fn clear_like(&mut self, other: &Self) {
-        let components = Component::ALL.into_iter().filter(|&component| !other.layers[component].is_empty());
-        self.clear(other.pixels, components.collect(), !other.ambient.is_empty());
+        (self.pixels, self.layers, self.ambient) = (other.pixels, other.layers, other.ambient);
+        self.sums.clear();
+        self.sums.resize(other.sums.len(), Rgb::ZERO);
+    }
+
+    /// Where a plane's sums lie; empty if there is no such plane.
+    fn place(&self, plane: Plane) -> Range<usize> {
+        let before = match plane {
+            Plane::Direct => Some(0),
+            Plane::Layer(component) => self.layers[component],
+            Plane::Ambient => self.ambient,
+        };
+        before.map_or(0..0, |before| before * self.pixels..(before + 1) * self.pixels)
     }
 
     /// A plane's sums, pixel by pixel; nothing if there is no such plane.
     #[must_use]
     pub fn sums(&self, plane: Plane) -> &[Rgb] {
-        match plane {
-            Plane::Direct => &self.direct,
-            Plane::Layer(component) => &self.layers[component],
-            Plane::Ambient => &self.ambient,
-        }
+        &self.sums[self.place(plane)]
     }
 
     /// The same, to change.
     pub fn sums_mut(&mut self, plane: Plane) -> &mut [Rgb] {
-        match plane {
-            Plane::Direct => &mut self.direct,
-            Plane::Layer(component) => &mut self.layers[component],
-            Plane::Ambient => &mut self.ambient,
-        }
+        let place = self.place(plane);
+        &mut self.sums[place]
     }
 
     /// Adds radiance at a pixel.
@@ -111,12 +117,8 @@ impl Planes {
 
     /// Adds the sums of another set of planes, pixel by pixel; both must have been cleared alike.
     pub fn add_all(&mut self, other: &Self) {
-        let add = |sums: &mut Vec<Rgb>, terms: &[Rgb]| sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += *term);
-        add(&mut self.direct, &other.direct);
-        for (component, plane) in self.layers.iter_mut() {
-            add(plane, &other.layers[component]);
-        }
-        add(&mut self.ambient, &other.ambient);
+        debug_assert_eq!((&self.layers, self.ambient), (&other.layers, other.ambient));
+        self.sums.iter_mut().zip(&other.sums).for_each(|(sum, term)| *sum += *term);
     }
 }
 
@@ -254,14 +256,14 @@ impl Film {
                 pixels.iter_mut().zip(sums).for_each(|(pixel, sum)| *pixel = single(*sum * scale));
             }
         };
-        copy(&mut self.direct, &sums.direct);
+        copy(&mut self.direct, sums.sums(Plane::Direct));
         for (component, layer) in self.layers.iter_mut() {
             if let Some(layer) = layer {
-                copy(layer, &sums.layers[component]);
+                copy(layer, sums.sums(Plane::Layer(component)));
             }
         }
         if let Some(ambient) = &mut self.ambient {
-            copy(ambient, &sums.ambient);
+            copy(ambient, sums.sums(Plane::Ambient));
         }
     }
 

@@ -331,7 +331,8 @@ fn statistics_have_the_contracts_keys() {
     let mut found = keys(&stats);
     found.sort();
     assert_eq!(found, expected);
-    let mut expected: Vec<&str> = "stage span run group rays spawned seconds predicted_s skipped".split(' ').collect();
+    let mut expected: Vec<&str> =
+        "stage span run group rays spawned seconds predicted_s bound_s skipped".split(' ').collect();
     expected.sort_unstable();
     let mut found = keys(&stats["stages"][1]);
     found.sort();
@@ -444,6 +445,25 @@ fn a_time_limit_gives_a_whole_picture_that_replays_to_the_bit() {
         assert_eq!(before, fs::read(folder.path(file)).unwrap());
     }
     assert!(!folder.path("b.exr").exists());
+}
+
+#[test]
+fn a_place_that_cannot_be_written_to_is_found_before_rendering() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("costs.json")).unwrap();
+    let words = ["room.rad", "--crex", "T", "-x", "8", "-y", "8", "-o", "a.png", "--time", "0.1"];
+    for (option, file) in [
+        ("--profile", "costs.json"),
+        ("--profile", "missing/costs.json"),
+        ("--stats", "costs.json"),
+        ("--stats", "missing/stats.json"),
+        ("-o", "missing/b.png"),
+    ] {
+        let output = folder.render(&[&words[..], &[option, file], &VIEW[..]].concat());
+        assert_eq!(output.status.code(), Some(1), "{option} {file}: {}", said(&output));
+        assert!(said(&output).contains(file.split('/').next().unwrap()), "{}", said(&output));
+        assert_eq!(folder.names(), ["costs.json", "room.rad"], "nothing was rendered for {option} {file}");
+    }
 }
 
 #[test]

@@ -87,8 +87,12 @@ impl ExrEncoder {
         for start in (0..band.beauty.len()).step_by(self.width) {
             let row = start..start + self.width;
             for source in &self.sources {
-                let pixels = source.layer.map_or(band.beauty, |index| band.layers[index]);
-                self.block.extend(pixels[row.clone()].iter().flat_map(|pixel| pixel[source.channel].to_ne_bytes()));
+                let pixels = &source.layer.map_or(band.beauty, |index| band.layers[index])[row.clone()];
+                let begin = self.block.len();
+                self.block.resize(begin + pixels.len() * size_of::<f32>(), 0);
+                for (bytes, pixel) in self.block[begin..].chunks_exact_mut(size_of::<f32>()).zip(pixels) {
+                    bytes.copy_from_slice(&pixel[source.channel].to_ne_bytes());
+                }
             }
             self.rows_done += 1;
             if self.rows_done.is_multiple_of(self.rows_per_block) || self.rows_done == self.height {

@@ -74,6 +74,8 @@ pub struct Header {
     pub layers: Vec<String>,
     /// How an EXR is packed.
     pub compression: Compression,
+    /// Whether the file is forced onto the disk before it gets its name ([`AtomicFile::commit`]).
+    pub durable: bool,
     /// HDR and PNG store radiance x exposure (HDR says so in its header; PNG clamps the product to [0, 1]). EXR always stores
     /// radiance.
     pub exposure: f64,
@@ -82,10 +84,11 @@ pub struct Header {
 }
 
 impl Header {
-    /// A header without layers, at exposure 1.
+    /// A header without layers, at exposure 1, of a file that is durable.
     #[must_use]
     pub fn new(width: usize, height: usize, provenance: Provenance) -> Self {
-        Self { width, height, layers: Vec::new(), compression: Compression::default(), exposure: 1.0, provenance }
+        let (layers, compression, durable) = (Vec::new(), Compression::default(), true);
+        Self { width, height, layers, compression, durable, exposure: 1.0, provenance }
     }
 
     /// The provenance that a format whose values are scaled by the exposure stores.
@@ -183,6 +186,7 @@ pub struct PictureFile {
     progress: Progress,
     encoder: Encoder,
     file: AtomicFile,
+    durable: bool,
 }
 
 impl PictureFile {
@@ -204,7 +208,7 @@ impl PictureFile {
             Format::Hdr => Encoder::Hdr(HdrEncoder::start(BufWriter::new(handle), header)?),
             Format::Png => Encoder::Png(Box::new(PngEncoder::start(BufWriter::new(handle), header)?)),
         };
-        Ok(Self { path: path.to_owned(), progress: Progress::new(header), encoder, file })
+        Ok(Self { path: path.to_owned(), progress: Progress::new(header), encoder, file, durable: header.durable })
     }
 
     /// Takes the next rows.
@@ -222,12 +226,12 @@ impl PictureFile {
             .map_err(|kind| Error::new(&self.path, kind))
     }
 
-    /// Completes the file, puts it on disk and gives it its name.
+    /// Completes the file, puts it on disk if it is to be durable, and gives it its name.
     ///
     /// # Errors
     /// If rows are missing or the disk refuses; the name then means what it meant before.
     pub fn finish(self) -> Result<(), Error> {
-        let Self { path, progress, encoder, file } = self;
+        let Self { path, progress, encoder, file, durable } = self;
         progress
             .finish()
             .and_then(|()| match encoder {
@@ -235,7 +239,7 @@ impl PictureFile {
                 Encoder::Hdr(encoder) => encoder.finish(),
                 Encoder::Png(encoder) => encoder.finish(),
             })
-            .and_then(|()| file.commit().map_err(Kind::Write))
+            .and_then(|()| if durable { file.commit() } else { file.commit_unsynced() }.map_err(Kind::Write))
             .map_err(|kind| Error::new(&path, kind))
     }
 }

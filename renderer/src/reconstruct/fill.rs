@@ -10,7 +10,8 @@ use crate::raster::Raster;
 ///
 /// `known` has a value for each pixel, row by row.
 pub fn fill(plane: &mut Raster<Vec3>, known: &[bool]) {
-    if known.iter().all(|known| *known) {
+    // Nothing to fill, or nothing to fill in with.
+    if known.iter().all(|known| *known) || plane.values().iter().all(|value| *value == Vec3::ZERO) {
         return;
     }
     let mut levels = vec![Layer::finest(plane, known)];

@@ -10,7 +10,7 @@ use crate::crex::ThresholdError;
 use crate::film::{Block, Film, Planes};
 use crate::schedule::Scheduler;
 use crate::transport::{Parcel, RANKS, Tracer, Workspace};
-use crate::work::Work;
+use crate::work::{Work, WorkReport};
 
 use super::outcome::{Outcome, finish};
 use super::{RenderError, Renderer, Rendering};
@@ -119,18 +119,35 @@ impl Renderer<'_> {
         parcel: &mut Parcel,
         workspace: &mut Workspace,
     ) -> Result<Outcome, ThresholdError> {
+        let outcome = self.run_alone_while(tracer, ranks, parcel, workspace, &|| true)?;
+        Ok(outcome.expect("nothing stops it"))
+    }
+
+    /// The same for as long as `go` says so; `None` if it was stopped, and then the parcel holds no picture.
+    pub(super) fn run_alone_while(
+        &self,
+        tracer: &Tracer<'_>,
+        ranks: &Range<u16>,
+        parcel: &mut Parcel,
+        workspace: &mut Workspace,
+        go: &dyn Fn() -> bool,
+    ) -> Result<Option<Outcome>, ThresholdError> {
         let mut scheduler = Scheduler::new(self.program, self.thresholds)?;
         let primary = self.timed(|| parcel.trace_lattice(tracer, &self.samples(), ranks, workspace));
         while let Some(work) = scheduler.next(&parcel.occupancy()) {
             match work {
                 Work::Release => parcel.release(),
                 Work::Run(stage) => {
-                    let report = self.timed(|| parcel.run(tracer, &stage, workspace));
-                    scheduler.report(&report);
+                    let begun_s = self.clock.now_s();
+                    let (report, complete) = parcel.run_while(tracer, &stage, workspace, go);
+                    if !complete {
+                        return Ok(None);
+                    }
+                    scheduler.report(&WorkReport { seconds: self.clock.now_s() - begun_s, ..report });
                 }
             }
         }
         let stopped = scheduler.stopped().to_vec();
-        Ok(Outcome { primary, rows: scheduler.into_rows(), left: parcel.left(), stopped })
+        Ok(Some(Outcome { primary, rows: scheduler.into_rows(), left: parcel.left(), stopped }))
     }
 }

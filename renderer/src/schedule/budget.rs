@@ -25,6 +25,12 @@ impl<'c> Budget<'c> {
         Self { reserve_s: self.reserve_s + seconds, ..self }
     }
 
+    /// The same with so many times as much kept, on a machine so many times slower.
+    #[must_use]
+    pub fn slowed(self, times: f64) -> Self {
+        Self { reserve_s: self.reserve_s * times, ..self }
+    }
+
     /// Seconds now, by the budget's clock.
     #[must_use]
     pub fn now_s(&self) -> f64 {

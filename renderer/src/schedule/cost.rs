@@ -1,6 +1,6 @@
 //! What rays of a kind have cost so far: a running mean weighted by rays, as in section 5.1 of the paper, and its spread.
 
-use crate::component::{Component, PerComponent};
+use crate::component::Component;
 
 /// A kind of ray with costs of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -45,14 +45,12 @@ pub struct Cost {
     squares: f64,
     /// Sum over observations of rays^2.
     weight_squares: f64,
-    /// Rays spawned, by component.
-    spawned: PerComponent<u64>,
 }
 
 impl Cost {
-    /// Takes in that `rays` rays took `seconds` together and spawned these. Nothing happens without rays, or with seconds
-    /// that are not a finite number of at least 0.
-    pub fn observe(&mut self, rays: u64, seconds: f64, spawned: &PerComponent<u64>) {
+    /// Takes in that `rays` rays took `seconds` together. Nothing happens without rays, or with seconds that are not a finite
+    /// number of at least 0.
+    pub fn observe(&mut self, rays: u64, seconds: f64) {
         if rays == 0 || !seconds.is_finite() || seconds < 0.0 {
             return;
         }
@@ -63,7 +61,6 @@ impl Cost {
             mean_s: seconds / weight,
             squares: 0.0,
             weight_squares: weight * weight,
-            spawned: *spawned,
         });
     }
 
@@ -81,20 +78,10 @@ impl Cost {
         self.weight_squares += other.weight_squares;
         self.rays = self.rays.saturating_add(other.rays);
         self.observations = self.observations.saturating_add(other.observations);
-        for (component, count) in self.spawned.iter_mut() {
-            *count = count.saturating_add(other.spawned[component]);
-        }
     }
 
     /// A cost as it was stored; none if these are not numbers that observations can amount to.
-    pub(super) fn from_parts(
-        rays: u64,
-        observations: u64,
-        mean_s: f64,
-        spread_s: f64,
-        effective: f64,
-        spawned: PerComponent<u64>,
-    ) -> Option<Self> {
+    pub(super) fn from_parts(rays: u64, observations: u64, mean_s: f64, spread_s: f64, effective: f64) -> Option<Self> {
         let weight = rays as f64;
         let fits = rays > 0
             && observations > 0
@@ -108,7 +95,6 @@ impl Cost {
             mean_s,
             squares: spread_s * spread_s * weight * unbiased,
             weight_squares: weight * weight / effective,
-            spawned,
         })
     }
 
@@ -146,18 +132,6 @@ impl Cost {
         }
         (self.squares / self.rays as f64 * effective / (effective - 1.0)).max(0.0).sqrt()
     }
-
-    /// Rays spawned in all, by component.
-    #[must_use]
-    pub fn spawned(&self) -> &PerComponent<u64> {
-        &self.spawned
-    }
-
-    /// Rays of `component` that one ray spawned on average; 0 before the first.
-    #[must_use]
-    pub fn children_per_ray(&self, component: Component) -> f64 {
-        if self.rays == 0 { 0.0 } else { self.spawned[component] as f64 / self.rays as f64 }
-    }
 }
 
 #[cfg(test)]
@@ -168,7 +142,7 @@ mod tests {
     fn observed(observations: &[(u64, f64)]) -> Cost {
         let mut cost = Cost::default();
         for &(rays, seconds) in observations {
-            cost.observe(rays, seconds, &PerComponent::from_fn(|component| rays * component as u64));
+            cost.observe(rays, seconds);
         }
         cost
     }
@@ -183,7 +157,6 @@ mod tests {
         let cost = observed(&[(100, 1.0), (300, 1.0)]);
         assert!(near(cost.mean_s(), 2.0 / 400.0));
         assert_eq!((cost.rays(), cost.observations()), (400, 2));
-        assert_eq!(cost.children_per_ray(Component::Glossy), 2.0);
         // Equal weights: the textbook's standard deviation of 1, 2, 3, 4.
         let cost = observed(&[(1, 1.0), (1, 2.0), (1, 3.0), (1, 4.0)]);
         assert!(near(cost.spread_s(), (5.0f64 / 3.0).sqrt()));
@@ -209,8 +182,7 @@ mod tests {
             prop_assert!(near(sum.mean_s(), whole.mean_s()));
             prop_assert!((sum.spread_s() - whole.spread_s()).abs() <= 1e-6 * whole.spread_s() + 1e-12);
             let stored = Cost::from_parts(
-                whole.rays(), whole.observations(), whole.mean_s(), whole.spread_s(),
-                whole.effective_observations(), *whole.spawned(),
+                whole.rays(), whole.observations(), whole.mean_s(), whole.spread_s(), whole.effective_observations(),
             );
             let stored = stored.expect("what was observed can be stored");
             prop_assert!((stored.spread_s() - whole.spread_s()).abs() <= 1e-6 * whole.spread_s() + 1e-12);

@@ -37,7 +37,9 @@ pub struct Estimate {
 }
 
 /// Walks `program` with expected numbers of rays in place of rays: a ray of a kind is taken to spawn the children that
-/// rays of that kind spawned on average, however deep it is.
+/// rays of that kind spawned on average, however deep it is, along the complete paths that the profile knows by the name of
+/// `paths`. Where a crex ends only when no ray is left, so learnt from itself, the sum over all generations is that of the
+/// paths; else it is near.
 ///
 /// `primary` is the number of primary rays; `share` tells which part of the pixels has at least an importance, and falls
 /// as that importance rises.
@@ -49,21 +51,22 @@ pub fn estimate(
     thresholds: Option<&[f32]>,
     primary: u64,
     share: impl Fn(f32) -> f64,
-    profile: &ProfileCache,
+    (profile, paths): (&ProfileCache, &str),
 ) -> Result<Estimate, ThresholdError> {
     let mut cursor = Cursor::new(program);
     if let Some(thresholds) = thresholds {
         cursor = cursor.with_thresholds(thresholds)?;
     }
     let thresholds = thresholds.unwrap_or(program.thresholds());
-    let mut bins = ExpectedBins::new(primary, thresholds, share, profile);
+    let children = |of, component| profile.children_per_ray(paths, of, component);
+    let mut bins = ExpectedBins::new(primary, thresholds, share, &children);
     let mut traced: PerComponent<f64> = PerComponent::default();
     let mut endless = false;
     while let Some(work) = cursor.next() {
         match work {
             Work::Release => bins.release(),
             Work::Run(stage) => {
-                let rays = bins.run(stage.component, stage.threshold, stage.held, profile);
+                let rays = bins.run(stage.component, stage.threshold, stage.held, &children);
                 traced[stage.component] += rays;
                 // Half a ray is none: the cursor counts whole ones, and a `*` must end.
                 cursor.report(rays.round() as u64);
@@ -100,6 +103,9 @@ fn sum_up(primary: f64, traced: &PerComponent<f64>, endless: bool, profile: &Pro
     estimate
 }
 
+/// Children of a component that a ray of a kind has on average.
+type Children<'a> = dyn Fn(RayKind, Component) -> f64 + 'a;
+
 /// Rays expected in each bin, of the pixels between one threshold and the next.
 struct ExpectedBins {
     /// The least importance of each class of pixels, rising.
@@ -109,7 +115,7 @@ struct ExpectedBins {
 }
 
 impl ExpectedBins {
-    fn new(primary: u64, thresholds: &[f32], share: impl Fn(f32) -> f64, profile: &ProfileCache) -> Self {
+    fn new(primary: u64, thresholds: &[f32], share: impl Fn(f32) -> f64, children: &Children<'_>) -> Self {
         let mut classes = vec![f32::NEG_INFINITY];
         classes.extend_from_slice(thresholds);
         classes.sort_by(f32::total_cmp);
@@ -122,7 +128,7 @@ impl ExpectedBins {
         let visible: Vec<PerComponent<f64>> = (0..classes.len())
             .map(|class| {
                 let rays = primary as f64 * (reaching(class) - reaching(class + 1)).max(0.0);
-                PerComponent::from_fn(|component| rays * children(profile, RayKind::Primary, component))
+                PerComponent::from_fn(|component| rays * children(RayKind::Primary, component))
             })
             .collect();
         let held = vec![PerComponent::default(); classes.len()];
@@ -130,7 +136,7 @@ impl ExpectedBins {
     }
 
     /// Runs a component; how many rays that traces.
-    fn run(&mut self, component: Component, threshold: Option<f32>, hold: bool, profile: &ProfileCache) -> f64 {
+    fn run(&mut self, component: Component, threshold: Option<f32>, hold: bool, children: &Children<'_>) -> f64 {
         let mut traced = 0.0;
         for (class, &least) in self.classes.iter().enumerate() {
             if threshold.is_some_and(|threshold| least < threshold) {
@@ -140,7 +146,7 @@ impl ExpectedBins {
             traced += rays;
             let into = if hold { &mut self.held[class] } else { &mut self.visible[class] };
             for (child, count) in into.iter_mut() {
-                *count += rays * children(profile, RayKind::Of(component), child);
+                *count += rays * children(RayKind::Of(component), child);
             }
         }
         traced
@@ -153,8 +159,4 @@ impl ExpectedBins {
             }
         }
     }
-}
-
-fn children(profile: &ProfileCache, of: RayKind, component: Component) -> f64 {
-    profile.cost(of).map_or(0.0, |cost| cost.children_per_ray(component))
 }

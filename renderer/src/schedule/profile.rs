@@ -3,10 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::component::PerComponent;
+use crate::component::{Component, PerComponent};
 
 use super::calibration::Calibration;
 use super::cost::{Cost, RayKind};
+use super::offspring::Offspring;
 
 /// Seconds by which the operating system may lengthen a task of any size: the least standard deviation of a prediction.
 pub const JITTER_S: f64 = 1e-3;
@@ -17,6 +18,12 @@ pub const PRIOR_SPREAD: f64 = 0.25;
 
 /// How many observations [`PRIOR_SPREAD`] counts as.
 pub const PRIOR_OBSERVATIONS: f64 = 2.0;
+
+/// Deviations that are kept for a chore beyond its mean.
+pub const KEPT_DEVIATIONS: f64 = 1.5;
+
+/// What a chore may take, as a multiple of what is kept for it, and be believed.
+pub const MOST_EXCESS: f64 = 2.0;
 
 /// How long a task is expected to take.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,10 +54,16 @@ pub struct ProfileCache {
     /// What of it was learnt since the cache was read or stored: another run may store in the meantime.
     fresh: [Cost; 7],
     fresh_errors: Vec<f64>,
-    /// What writing pictures has cost, by the name of the format; its "rays" are bytes.
+    /// What finishing pictures has cost, by the name of the format for writers; its "rays" are bytes.
     writers: BTreeMap<String, Cost>,
     fresh_writers: BTreeMap<String, Cost>,
+    /// What rays spawned along complete paths, by what the paths were.
+    children: BTreeMap<String, Family>,
+    fresh_children: BTreeMap<String, Family>,
 }
+
+/// The offspring of each kind of ray.
+type Family = [Offspring; 7];
 
 impl ProfileCache {
     /// An empty cache. `scene` and `machine` say what its costs hold for: a hash of all that the scene was made from, and a
@@ -66,6 +79,8 @@ impl ProfileCache {
             fresh_errors: Vec::new(),
             writers: BTreeMap::new(),
             fresh_writers: BTreeMap::new(),
+            children: BTreeMap::new(),
+            fresh_children: BTreeMap::new(),
         }
     }
 
@@ -93,16 +108,49 @@ impl ProfileCache {
         &self.calibration
     }
 
-    /// Takes in that `rays` rays of a kind took `seconds` together and spawned these.
-    pub fn observe(&mut self, kind: RayKind, rays: u64, seconds: f64, spawned: &PerComponent<u64>) {
-        self.known[kind.index()].observe(rays, seconds, spawned);
-        self.fresh[kind.index()].observe(rays, seconds, spawned);
+    /// Takes in that `rays` rays of a kind took `seconds` together.
+    pub fn observe(&mut self, kind: RayKind, rays: u64, seconds: f64) {
+        self.known[kind.index()].observe(rays, seconds);
+        self.fresh[kind.index()].observe(rays, seconds);
     }
 
-    /// Takes in that a writer, named by its format, took `seconds` for so many bytes of pixels.
+    /// Takes in what `parents` rays of a kind spawned, all on paths that ran through a whole crex. `paths` says which crex that
+    /// was, and under which limits: what rays spawn depends on both.
+    pub fn observe_children(&mut self, paths: &str, kind: RayKind, parents: u64, spawned: &PerComponent<u64>) {
+        let more = Offspring::new(parents, *spawned);
+        for children in [&mut self.children, &mut self.fresh_children] {
+            children.entry(paths.to_owned()).or_default()[kind.index()].add(&more);
+        }
+    }
+
+    /// How many complete paths of this kind have been seen.
+    #[must_use]
+    pub fn paths_seen(&self, paths: &str) -> u64 {
+        self.children.get(paths).map_or(0, |family| family[RayKind::Primary.index()].parents())
+    }
+
+    /// Children of `component` that a ray of a kind has on average along such paths; 0 where nothing is known.
+    #[must_use]
+    pub fn children_per_ray(&self, paths: &str, kind: RayKind, component: Component) -> f64 {
+        self.children.get(paths).map_or(0.0, |family| family[kind.index()].per_ray(component))
+    }
+
+    /// What is known of complete paths: what they were, and of each kind of ray its offspring.
+    pub fn children(&self) -> impl Iterator<Item = (&str, impl Iterator<Item = (RayKind, &Offspring)>)> {
+        self.children.iter().map(|(paths, family)| {
+            let seen = RayKind::ALL.into_iter().zip(family).filter(|(_, offspring)| offspring.parents() > 0);
+            (paths.as_str(), seen)
+        })
+    }
+
+    /// Takes in that a writer, named by its format, or another chore that ends a picture took `seconds` for so many bytes of
+    /// pixels. More than [`MOST_EXCESS`] times what would have been kept for it is taken for that much: a disk that stalled once is
+    /// not to starve the pictures that follow, and one that has become slower is learnt all the same.
     pub fn observe_writer(&mut self, name: &str, bytes: u64, seconds: f64) {
+        let most_s = self.kept_s(name, bytes).map_or(f64::INFINITY, |kept_s| MOST_EXCESS * kept_s);
+        let seconds = seconds.min(most_s);
         for writers in [&mut self.writers, &mut self.fresh_writers] {
-            writers.entry(name.to_owned()).or_default().observe(bytes, seconds, &PerComponent::default());
+            writers.entry(name.to_owned()).or_default().observe(bytes, seconds);
         }
     }
 
@@ -136,6 +184,13 @@ impl ProfileCache {
         (prediction.mean_s + self.calibration.factor() * prediction.deviation_s).max(0.0)
     }
 
+    /// Seconds to keep for a writer or another chore: [`KEPT_DEVIATIONS`] more than its mean. Its errors are not those of rays,
+    /// and what is kept and not needed is lost.
+    #[must_use]
+    pub fn kept_s(&self, name: &str, bytes: u64) -> Option<f64> {
+        self.predict_writer(name, bytes).map(|predicted| predicted.mean_s + KEPT_DEVIATIONS * predicted.deviation_s)
+    }
+
     /// Takes in how long a predicted task took.
     pub fn record(&mut self, prediction: &Prediction, seconds: f64) {
         let error = (seconds - prediction.mean_s) / prediction.deviation_s;
@@ -150,6 +205,12 @@ impl ProfileCache {
         for (name, fresh) in &other.fresh_writers {
             for writers in [&mut self.writers, &mut self.fresh_writers] {
                 writers.entry(name.clone()).or_default().add(fresh);
+            }
+        }
+        for (paths, fresh) in &other.fresh_children {
+            for children in [&mut self.children, &mut self.fresh_children] {
+                let family = children.entry(paths.clone()).or_default();
+                family.iter_mut().zip(fresh).for_each(|(known, fresh)| known.add(fresh));
             }
         }
         for (kind, fresh) in other.fresh.iter().enumerate() {
@@ -167,6 +228,11 @@ impl ProfileCache {
         self.known[kind.index()] = cost;
     }
 
+    /// Sets what rays of a kind spawned along complete paths, as it was stored.
+    pub(super) fn restore_children(&mut self, paths: &str, kind: RayKind, offspring: Offspring) {
+        self.children.entry(paths.to_owned()).or_default()[kind.index()] = offspring;
+    }
+
     /// Sets what is known of a writer, as it was stored.
     pub(super) fn restore_writer(&mut self, name: String, cost: Cost) {
         self.writers.insert(name, cost);
@@ -182,6 +248,7 @@ impl ProfileCache {
         self.fresh = [Cost::default(); 7];
         self.fresh_errors.clear();
         self.fresh_writers.clear();
+        self.fresh_children.clear();
     }
 }
 

@@ -2,21 +2,23 @@
 //!
 //! ```json
 //! {
-//!   "format": "crex profile 1",
+//!   "format": "crex profile 2",
 //!   "scene": "<hash of what the scene was made from>",
 //!   "machine": "<processor, threads, program>",
 //!   "rays": {
-//!     "primary": {"rays": 1228800, "observations": 1, "effective": 1.0, "mean_s": 1.1e-6, "spread_s": 0.0,
-//!                 "spawned": {"D": 921600, "T": 30720}},
+//!     "primary": {"rays": 1228800, "observations": 1, "effective": 1.0, "mean_s": 1.1e-6, "spread_s": 0.0},
 //!     "D": ...
 //!   },
 //!   "writers": {"zip": {"rays": 103680000, ...}},
+//!   "children": {"(TRD)* <limits>": {"primary": {"parents": 4800, "spawned": {"D": 3600, "T": 120}}, ...}},
 //!   "errors": [-0.4, 1.2]
 //! }
 //! ```
 //! `mean_s` and `spread_s` are seconds a ray, `effective` the number of equal observations that would say as much,
 //! `errors` those of past predictions in deviations, the oldest first. `writers` is the cost of writing pictures, by format
-//! or EXR's compression, of which bytes are counted in place of rays. Kinds never observed are absent.
+//! or EXR's compression, and of other chores (`gather`, `develop`, `fill`), of which bytes are counted in place of rays, and of
+//! the `sprinkle`, of which nanoseconds are counted that its rays were expected to take. `children` holds, for a crex and the
+//! limits of its paths, rays of complete paths and what they spawned. Kinds never observed are absent.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -33,9 +35,10 @@ use crate::component::{Component, PerComponent};
 
 use super::calibration::REMEMBERED;
 use super::cost::{Cost, RayKind};
+use super::offspring::Offspring;
 use super::profile::ProfileCache;
 
-const FORMAT: &str = "crex profile 1";
+const FORMAT: &str = "crex profile 2";
 
 /// How often and how long to wait for another run that is storing: a second in all.
 const PATIENCE: (u32, Duration) = (100, Duration::from_millis(10));
@@ -91,6 +94,8 @@ struct Stored {
     rays: BTreeMap<String, StoredCost>,
     #[serde(default)]
     writers: BTreeMap<String, StoredCost>,
+    #[serde(default)]
+    children: BTreeMap<String, BTreeMap<String, StoredOffspring>>,
     errors: Vec<f64>,
 }
 
@@ -101,6 +106,11 @@ struct StoredCost {
     effective: f64,
     mean_s: f64,
     spread_s: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct StoredOffspring {
+    parents: u64,
     spawned: BTreeMap<char, u64>,
 }
 
@@ -120,8 +130,9 @@ impl ProfileCache {
     /// Stores what was learnt since the cache was read or last stored, together with what other runs have stored
     /// meanwhile; the cache then holds both.
     ///
-    /// The new file is written beside the old one and takes its name when it is complete. Runs wait for each other by a
-    /// lock on a file beside it (`.lock`), which the system lifts when a run dies.
+    /// The new file is written beside the old one and takes its name when it is complete; the system brings it to disk when it
+    /// likes, since saving counts as part of a time limit. Runs wait for each other by a lock on a file beside it (`.lock`),
+    /// which the system lifts when a run dies.
     ///
     /// # Errors
     /// As [`Self::load`]; if it cannot be written; if another run keeps it locked for more than a second. What is on disk
@@ -133,7 +144,7 @@ impl ProfileCache {
         let temporary = beside(path, ".part");
         let io_error = |source| ProfileError::Io { path: temporary.clone(), source };
         let mut file = File::create(&temporary).map_err(io_error)?;
-        file.write_all(to_json(&all).as_bytes()).and_then(|()| file.sync_all()).map_err(io_error)?;
+        file.write_all(to_json(&all).as_bytes()).map_err(io_error)?;
         fs::rename(&temporary, path).map_err(|source| ProfileError::Io { path: path.to_owned(), source })?;
         drop(lock);
         all.stored();
@@ -180,6 +191,7 @@ fn to_json(cache: &ProfileCache) -> String {
         machine: cache.machine().to_owned(),
         rays: costs.map(|(kind, cost)| (name(kind), stored_cost(cost))).collect(),
         writers: cache.writers().map(|(name, cost)| (name.to_owned(), stored_cost(cost))).collect(),
+        children: cache.children().map(|(paths, family)| (paths.to_owned(), stored_family(family))).collect(),
         errors: cache.calibration().errors().collect(),
     };
     let mut text = serde_json::to_string_pretty(&stored).expect("text keys and finite numbers are JSON");
@@ -187,15 +199,22 @@ fn to_json(cache: &ProfileCache) -> String {
     text
 }
 
+fn stored_family<'a>(family: impl Iterator<Item = (RayKind, &'a Offspring)>) -> BTreeMap<String, StoredOffspring> {
+    let stored = |offspring: &Offspring| {
+        let spawned = offspring.spawned().iter().filter(|(_, count)| **count > 0);
+        let spawned = spawned.map(|(component, count)| (component.letter(), *count)).collect();
+        StoredOffspring { parents: offspring.parents(), spawned }
+    };
+    family.map(|(kind, offspring)| (name(kind), stored(offspring))).collect()
+}
+
 fn stored_cost(cost: &Cost) -> StoredCost {
-    let spawned = cost.spawned().iter().filter(|(_, count)| **count > 0);
     StoredCost {
         rays: cost.rays(),
         observations: cost.observations(),
         effective: cost.effective_observations(),
         mean_s: cost.mean_s(),
         spread_s: cost.spread_s(),
-        spawned: spawned.map(|(component, count)| (component.letter(), *count)).collect(),
     }
 }
 
@@ -212,34 +231,39 @@ fn from_json(text: &str, path: &Path, scene: &str, machine: &str) -> Result<Prof
         }
     }
     let mut cache = ProfileCache::new(scene, machine);
-    for (key, cost) in stored.rays {
-        let at = || {
-            let quoted = format!("\"{key}\"");
-            let line = text.lines().position(|line| line.contains(&quoted)).unwrap_or(0);
-            (line + 1, text.lines().nth(line).and_then(|line| line.find(&quoted)).unwrap_or(0) + 1)
-        };
-        let refuse = |message: &str| {
-            let (line, column) = at();
-            broken(line, column, message.to_owned())
-        };
+    let refuse = |key: &str, message: &str| {
+        let quoted = format!("\"{key}\"");
+        let line = text.lines().position(|line| line.contains(&quoted)).unwrap_or(0);
+        let column = text.lines().nth(line).and_then(|line| line.find(&quoted)).unwrap_or(0);
+        broken(line + 1, column + 1, message.to_owned())
+    };
+    let kind = |key: &str| {
         let kind = RayKind::ALL.into_iter().find(|kind| name(*kind) == key);
-        let kind = kind.ok_or_else(|| refuse("expected primary or one of the components D S G T R M"))?;
-        let mut spawned = PerComponent::default();
-        for (letter, count) in cost.spawned {
-            let component = Component::from_letter(letter);
-            let component = component.ok_or_else(|| refuse("expected spawned rays of D S G T R M only"))?;
-            spawned[component] = count;
-        }
-        let cost = Cost::from_parts(cost.rays, cost.observations, cost.mean_s, cost.spread_s, cost.effective, spawned);
-        let cost = cost.ok_or_else(|| refuse("expected rays, observations and seconds of at least 0"))?;
-        cache.restore(kind, cost);
+        kind.ok_or_else(|| refuse(key, "expected primary or one of the components D S G T R M"))
+    };
+    let numbers = "expected rays (or bytes), observations and seconds of at least 0";
+    let known = |key: &str, stored: StoredCost| {
+        let StoredCost { rays, observations, effective, mean_s, spread_s } = stored;
+        Cost::from_parts(rays, observations, mean_s, spread_s, effective).ok_or_else(|| refuse(key, numbers))
+    };
+    for (key, stored) in stored.rays {
+        cache.restore(kind(&key)?, known(&key, stored)?);
     }
-    for (key, cost) in stored.writers {
-        let none = PerComponent::default();
-        let cost = Cost::from_parts(cost.rays, cost.observations, cost.mean_s, cost.spread_s, cost.effective, none);
-        let line = text.lines().position(|line| line.contains(&format!("\"{key}\""))).unwrap_or(0) + 1;
-        let message = "expected bytes, observations and seconds of at least 0".to_owned();
-        cache.restore_writer(key, cost.ok_or_else(|| broken(line, 1, message))?);
+    for (key, stored) in stored.writers {
+        let cost = known(&key, stored)?;
+        cache.restore_writer(key, cost);
+    }
+    for (paths, family) in stored.children {
+        for (key, StoredOffspring { parents, spawned: counts }) in family {
+            let mut spawned = PerComponent::default();
+            for (letter, count) in counts {
+                let component = Component::from_letter(letter);
+                let component =
+                    component.ok_or_else(|| refuse(&letter.to_string(), "expected rays of D S G T R M only"))?;
+                spawned[component] = count;
+            }
+            cache.restore_children(&paths, kind(&key)?, Offspring::new(parents, spawned));
+        }
     }
     let skip = stored.errors.len().saturating_sub(REMEMBERED);
     cache.restore_errors(stored.errors.into_iter().skip(skip));

@@ -13,6 +13,8 @@ pub struct StageRow {
     pub report: WorkReport,
     /// Seconds that its task was predicted to take, under a time limit.
     pub predicted_s: Option<f64>,
+    /// Seconds that its task was predicted not to exceed, with the profile's confidence.
+    pub bound_s: Option<f64>,
     /// Why it did not run.
     pub skipped: Option<Skipped>,
 }
@@ -28,7 +30,7 @@ impl StageRow {
     /// The row of a stage that ran without a prediction.
     #[must_use]
     pub fn ran(stage: Stage, report: WorkReport) -> Self {
-        Self { stage, report, predicted_s: None, skipped: None }
+        Self { stage, report, predicted_s: None, bound_s: None, skipped: None }
     }
 }
 
@@ -49,6 +51,7 @@ pub fn merge_rows(tiles: impl IntoIterator<Item = Vec<StageRow>>) -> Vec<StageRo
                 // Skipped only if it was skipped everywhere.
                 sum.skipped = sum.skipped.and(row.skipped);
                 sum.predicted_s = sum.predicted_s.zip(row.predicted_s).map(|(one, other)| one + other);
+                sum.bound_s = sum.bound_s.zip(row.bound_s).map(|(one, other)| one + other);
                 sum.report.rays += row.report.rays;
                 sum.report.seconds += row.report.seconds;
                 for (component, count) in sum.report.spawned.iter_mut() {

@@ -53,7 +53,7 @@ impl<'p> Scheduler<'p> {
             }
             self.cursor.report(0);
             let (report, skipped) = (WorkReport::default(), Some(Skipped::Time));
-            self.rows.push(StageRow { stage: stage.clone(), report, predicted_s: None, skipped });
+            self.rows.push(StageRow { stage: stage.clone(), report, predicted_s: None, bound_s: None, skipped });
         }
     }
 

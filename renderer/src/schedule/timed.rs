@@ -165,9 +165,9 @@ impl<'a> TimedScheduler<'a> {
                 }
                 Work::Run(stage) => {
                     self.cursor.report(0);
-                    let predicted_s = self.prediction.map(|prediction| prediction.mean_s);
                     let report = WorkReport::default();
-                    self.rows.push(StageRow { stage, report, predicted_s, skipped: Some(Skipped::Time) });
+                    let (predicted_s, bound_s) = self.expected_s();
+                    self.rows.push(StageRow { stage, report, predicted_s, bound_s, skipped: Some(Skipped::Time) });
                 }
             }
         }
@@ -191,12 +191,12 @@ impl<'a> TimedScheduler<'a> {
             Pending::Run(stage) => {
                 self.learn(stage.component, &report);
                 self.taken_s += report.seconds;
-                let predicted_s = self.prediction.map(|prediction| prediction.mean_s + self.probed_s);
+                let (predicted_s, bound_s) = self.expected_s();
                 // What the probes did is the stage's now, and counted once.
                 let (_, kept) = &mut self.probes[stage.component];
                 add(&mut report, &std::mem::take(kept));
                 self.cursor.report(report.rays);
-                self.rows.push(StageRow { stage, report, predicted_s, skipped: None });
+                self.rows.push(StageRow { stage, report, predicted_s, bound_s, skipped: None });
             }
         }
     }
@@ -214,15 +214,9 @@ impl<'a> TimedScheduler<'a> {
         if bound_s > 0.0 { bound_s / left_s.max(f64::MIN_POSITIVE) } else { 0.0 }
     }
 
-    /// What the task under way was predicted to take.
-    #[must_use]
-    pub fn predicted(&self) -> Prediction {
-        self.prediction.unwrap_or_default()
-    }
-
     /// In place of [`report`](Self::report): the task was cut off since it overran the time, and all that it did has been
-    /// undone. All that comes after it is skipped. `part` is what the last stage did until then; it teaches the profile, and a task cut off counts as one that
-    /// took at least as long as the time it was given.
+    /// undone. All that comes after it is skipped. `part` is what the last stage did until then; it teaches the profile, and a
+    /// task cut off counts as one that took at least as long as the time it was given.
     pub fn cut_off(&mut self, part: &WorkReport) {
         let Some((pending, since_s)) = self.pending.take() else {
             return;
@@ -242,9 +236,9 @@ impl<'a> TimedScheduler<'a> {
             row.report = WorkReport::default();
             row.skipped = Some(Skipped::Time);
         }
-        let predicted_s = self.prediction.map(|prediction| prediction.mean_s + self.probed_s);
+        let (predicted_s, bound_s) = self.expected_s();
         let skipped = Some(Skipped::Time);
-        self.rows.push(StageRow { stage, report: WorkReport::default(), predicted_s, skipped });
+        self.rows.push(StageRow { stage, report: WorkReport::default(), predicted_s, bound_s, skipped });
         self.cursor.report(0);
         self.phase = Phase::Under { runs: false };
         self.over = true;
@@ -262,8 +256,15 @@ impl<'a> TimedScheduler<'a> {
         self.rows
     }
 
+    /// What the task under way is predicted to take, and not to exceed, with the seconds that its probes took already.
+    fn expected_s(&self) -> (Option<f64>, Option<f64>) {
+        let (bound_s, _) = self.margin_s;
+        let whole = |seconds: f64| self.prediction.map(|_| seconds + self.probed_s);
+        (self.prediction.and_then(|prediction| whole(prediction.mean_s)), whole(bound_s))
+    }
+
     fn learn(&mut self, component: Component, report: &WorkReport) {
-        self.profile.observe(RayKind::Of(component), report.rays, report.seconds, &report.spawned);
+        self.profile.observe(RayKind::Of(component), report.rays, report.seconds);
     }
 
     /// A probe that the task needs before it can be predicted.

@@ -41,6 +41,9 @@ pub struct Parcel {
     planes: Planes,
 }
 
+/// Rays that are traced between two looks at whether to go on: a fraction of a millisecond.
+const UNASKED: u32 = 32;
+
 /// Memory that tracing needs beside a parcel; one for each thread.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
@@ -114,11 +117,33 @@ impl Parcel {
     /// modulation admits (without one every pixel counts as 1). The others stay visible; only rays that continuous
     /// importance has passed over are dropped, since others of their pixel stand for them.
     pub fn run(&mut self, tracer: &Tracer<'_>, stage: &Stage, workspace: &mut Workspace) -> WorkReport {
+        self.run_while(tracer, stage, workspace, &|| true).0
+    }
+
+    /// As [`Self::run`], for as long as `go` says so: what was done, and whether that is all. If it is not, rays have been lost
+    /// and the parcel holds no picture any more.
+    pub fn run_while(
+        &mut self,
+        tracer: &Tracer<'_>,
+        stage: &Stage,
+        workspace: &mut Workspace,
+        go: &dyn Fn() -> bool,
+    ) -> (WorkReport, bool) {
         let mut records = self.bins.take(stage.component);
         let mut rays = 0;
+        let mut unasked = 0u32;
+        let mut complete = true;
         let mut spawned = PerComponent::default();
         let glossy = tracer.limits.glossy_sampling();
         for mut record in records.drain(..) {
+            if unasked == 0 {
+                if !go() {
+                    complete = false;
+                    break;
+                }
+                unasked = UNASKED;
+            }
+            unasked = unasked.saturating_sub(record.count);
             let (x, y) = place(&self.block, record.path.pixel as usize);
             if !reaches(tracer, &self.block, &record, stage.threshold) {
                 self.bins.push(stage.component, record, false);
@@ -151,7 +176,7 @@ impl Parcel {
             spawned = spawner.spawned;
         }
         self.bins.give_back(records);
-        WorkReport { rays, spawned, seconds: 0.0 }
+        (WorkReport { rays, spawned, seconds: 0.0 }, complete)
     }
 
     /// Number of its pixels.

@@ -12,13 +12,14 @@ fn profile(children: f64) -> ProfileCache {
     for kind in RayKind::ALL {
         let rate = if kind == RayKind::Primary { 1.0 } else { children };
         let spawned = PerComponent::from_fn(|_| (rays as f64 * rate) as u64);
-        profile.observe(kind, rays, 1.0, &spawned);
+        profile.observe(kind, rays, 1.0);
+        profile.observe_children("paths", kind, rays, &spawned);
     }
     profile
 }
 
 fn estimated(crex: &str, share: impl Fn(f32) -> f64, profile: &ProfileCache) -> Estimate {
-    estimate(&compile(crex).expect(crex), None, 1000, share, profile).expect("own thresholds")
+    estimate(&compile(crex).expect(crex), None, 1000, share, (profile, "paths")).expect("own thresholds")
 }
 
 fn rays(estimate: &Estimate, component: Component) -> f64 {
@@ -63,7 +64,9 @@ fn braces_count_the_pixels_that_reach_them() {
 #[test]
 fn what_is_unknown_or_endless_is_said() {
     let mut primary_only = ProfileCache::new("scene", "machine");
-    primary_only.observe(RayKind::Primary, 10, 1.0, &PerComponent::from_fn(|c| u64::from(c == Component::Glossy)));
+    primary_only.observe(RayKind::Primary, 10, 1.0);
+    let spawned = PerComponent::from_fn(|c| u64::from(c == Component::Glossy));
+    primary_only.observe_children("paths", RayKind::Primary, 10, &spawned);
     let estimate = estimated("GD", |_| 1.0, &primary_only);
     assert!(estimate.unknown[Component::Glossy], "100 rays of unknown cost");
     assert!(!estimate.unknown[Component::Diffuse], "no ray, no cost");

@@ -7,8 +7,10 @@ use renderer::schedule::{ProfileCache, ProfileError, RayKind};
 
 fn learn(profile: &mut ProfileCache, rays: u64) {
     let spawned = PerComponent::from_fn(|component| rays / (1 + component as u64));
-    profile.observe(RayKind::Primary, rays, rays as f64 * 1e-6, &spawned);
-    profile.observe(RayKind::Of(Component::Diffuse), rays, rays as f64 * 3e-6 + 1e-3, &spawned);
+    profile.observe(RayKind::Primary, rays, rays as f64 * 1e-6);
+    profile.observe(RayKind::Of(Component::Diffuse), rays, rays as f64 * 3e-6 + 1e-3);
+    profile.observe_children("D", RayKind::Primary, rays, &spawned);
+    profile.observe_children("T", RayKind::Of(Component::Diffuse), 2 * rays, &spawned);
     let prediction = profile.predict(RayKind::Primary, 1000).expect("known");
     profile.record(&prediction, prediction.mean_s * 1.5);
 }
@@ -26,10 +28,7 @@ fn what_is_stored_is_read_back() {
     for kind in RayKind::ALL {
         match (profile.cost(kind), again.cost(kind)) {
             (Some(one), Some(other)) => {
-                assert_eq!(
-                    (one.rays(), one.observations(), one.spawned()),
-                    (other.rays(), other.observations(), other.spawned())
-                );
+                assert_eq!((one.rays(), one.observations()), (other.rays(), other.observations()));
                 assert_eq!(one.mean_s(), other.mean_s());
                 assert!((one.spread_s() - other.spread_s()).abs() <= 1e-9 * one.spread_s());
             }
@@ -37,6 +36,13 @@ fn what_is_stored_is_read_back() {
         }
     }
     assert_eq!(again.calibration(), profile.calibration());
+    let children = |profile: &ProfileCache| {
+        let of = |(paths, family): (&str, _)| (paths.to_owned(), Vec::from_iter(family));
+        format!("{:?}", Vec::from_iter(profile.children().map(of)))
+    };
+    assert_eq!(children(&again), children(&profile));
+    assert_eq!((again.paths_seen("D"), again.paths_seen("T"), again.paths_seen("TD")), (71_000, 0, 0));
+    assert_eq!(again.children_per_ray("T", RayKind::Of(Component::Diffuse), Component::Diffuse), 0.5);
     // Stored again without news it says the same.
     let before = fs::read_to_string(&path).expect("text");
     ProfileCache::load(&path, "scene", "machine").expect("read").save(&path).expect("stored");
@@ -72,11 +78,9 @@ fn what_is_no_profile_is_refused_by_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("profile.json");
     let head =
-        "{\"format\": \"crex profile 1\", \"scene\": \"scene\", \"machine\": \"machine\", \"errors\": [],\n\"rays\": {";
+        "{\"format\": \"crex profile 2\", \"scene\": \"scene\", \"machine\": \"machine\", \"errors\": [],\n\"rays\": {";
     let cost = |mean: &str| {
-        format!(
-            "{{\"rays\": 5, \"observations\": 1, \"effective\": 1, \"mean_s\": {mean}, \"spread_s\": 0, \"spawned\": {{}}}}"
-        )
+        format!("{{\"rays\": 5, \"observations\": 1, \"effective\": 1, \"mean_s\": {mean}, \"spread_s\": 0}}")
     };
     for (text, line) in [
         (String::new(), 1),
@@ -85,6 +89,8 @@ fn what_is_no_profile_is_refused_by_line() {
         (format!("{head}\n\n\"Q\": {}}}}}", cost("1")), 4),
         (format!("{head}\n\"D\": {}}}}}", cost("1e999")), 3),
         (format!("{head}\n\"D\": {{}}}}}}"), 3),
+        (format!("{head}}},\n\"children\": {{\"D\": {{\n\"Q\": {{\"parents\": 1, \"spawned\": {{}}}}}}}}}}"), 4),
+        (format!("{head}}},\n\"children\": {{\"D\": {{\"D\": {{\"parents\": 1, \"spawned\":\n{{\"Q\": 1}}}}}}}}}}"), 4),
     ] {
         fs::write(&path, &text).expect("written");
         let error = ProfileCache::load(&path, "scene", "machine").expect_err("no profile");
@@ -116,6 +122,7 @@ fn runs_that_store_at_the_same_time_lose_nothing() {
     assert_eq!((cost.rays(), cost.observations()), (RUNS * FRAMES * 1000, RUNS * FRAMES));
     assert!((cost.mean_s() - 1e-6).abs() < 1e-15);
     assert_eq!(profile.calibration().errors().count() as u64, RUNS * FRAMES);
+    assert_eq!(profile.paths_seen("D"), RUNS * FRAMES * 1000);
 }
 
 #[test]

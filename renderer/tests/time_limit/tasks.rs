@@ -129,7 +129,7 @@ fn probes_of_a_skipped_task_leave_nothing_behind() {
 fn probes_ask_for_little_time_when_little_is_left() {
     // A second for a ray and nothing known but that: a hundredth of 3000 rays would be thirty seconds.
     let mut profile = ProfileCache::new("scene", "machine");
-    profile.observe(renderer::schedule::RayKind::Primary, 100, 100.0, &PerComponent::default());
+    profile.observe(renderer::schedule::RayKind::Primary, 100, 100.0);
     let program = compile("TD").expect("a crex");
     let timed = execute(&program, &even(3000, 1), &Prices::flat(1_000_000), 10.0, &mut profile, 1);
     assert_eq!(timed.counts(), "T- D-");

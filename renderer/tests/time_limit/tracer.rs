@@ -196,7 +196,7 @@ pub(crate) fn knowing(prices: &Prices) -> ProfileCache {
     for component in Component::ALL {
         for _ in 0..1000 {
             let seconds = prices.micros[component] as f64 * 1e-6 * 1e6;
-            profile.observe(RayKind::Of(component), 1_000_000, seconds, &PerComponent::default());
+            profile.observe(RayKind::Of(component), 1_000_000, seconds);
         }
     }
     profile

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use renderer::component::{Component, PerComponent};
+use renderer::component::Component;
 use renderer::crex::{self, Program};
 use renderer::film::Film;
 use renderer::raster::Raster;
@@ -15,7 +15,7 @@ use crate::execution::{assert_same, room, settings};
 
 /// A millisecond passes at every look.
 #[derive(Default)]
-struct Ticking(AtomicU64);
+pub(crate) struct Ticking(AtomicU64);
 
 impl Clock for Ticking {
     fn now_s(&self) -> f64 {
@@ -106,7 +106,7 @@ fn a_record_repeats_its_picture_to_the_bit_with_any_number_of_threads() {
 /// All of 40 x 40 pixels in one round.
 fn one_round(samples: u32, ran: &[bool]) -> TimedRecord {
     let round = RoundRecord { first_sample: 0, samples, tiles: 9, ran: ran.to_vec() };
-    TimedRecord { rounds: vec![round], units: 0 }
+    TimedRecord { rounds: vec![round], units: 0, missing: Vec::new() }
 }
 
 fn close(one: &Film, other: &Film) {
@@ -153,7 +153,7 @@ fn rounds_and_refinement_count_by_their_samples() {
     let both = room.with("TRSMGD", settings(2), |renderer| renderer.replay(&record).unwrap());
     assert!((both.refined_samples - 2.0).abs() < 1e-12);
     close(&both.rendering.film, &room.render("TRSMGD", settings(4)).film);
-    let refined = TimedRecord { rounds: Vec::new(), units: 14 * 9 };
+    let refined = TimedRecord { rounds: Vec::new(), ..record };
     let alone = room.with("TRSMGD", settings(2), |renderer| renderer.replay(&refined).unwrap());
     assert_eq!(alone.rendering.primary.rays, 2 * 40 * 40);
 }
@@ -168,7 +168,7 @@ fn an_overrunning_task_is_cut_off_and_leaves_nothing_half_lit() {
         let mut profile = nothing_known();
         for kind in RayKind::ALL {
             // Enough equal observations that the prediction is sure of itself.
-            (0..100).for_each(|_| profile.observe(kind, 1000, 2e-6 * 1000.0, &PerComponent::default()));
+            (0..100).for_each(|_| profile.observe(kind, 1000, 2e-6 * 1000.0));
         }
         let timed = room.within("DTRSMG", settings(1), 0.02 + 0.004 * f64::from(step), &mut profile);
         let Some(round) = timed.record.rounds.first() else { continue };

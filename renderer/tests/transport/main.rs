@@ -4,6 +4,7 @@
 
 mod closed_forms;
 mod continuous;
+mod estimated;
 mod execution;
 mod first_hits;
 mod furnace;

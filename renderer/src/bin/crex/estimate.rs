@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use renderer::component::ComponentSet;
-use renderer::schedule::{Budget, Clock, Estimate, Expected, MonotonicClock, ProfileCache, RayKind, estimate};
+use renderer::schedule::{Budget, Clock, Estimate, Expected, MonotonicClock, ProfileCache, estimate};
 use serde::Serialize;
 
 use crate::console::{self, Failure};
 use crate::options::RadianceOptions;
 use crate::render::{self, Prepared};
-use crate::timed;
+use crate::{output, timed};
 
 /// Seconds that are spent on learning what nothing is known of.
 const LEARNING_S: f64 = 0.5;
+
+/// Complete paths that tell what rays spawn.
+const LEAST_PATHS: u64 = 100;
 
 /// What `crex estimate` takes besides rpict's options.
 #[derive(clap::Args, Clone, Debug)]
@@ -56,7 +58,9 @@ impl From<&Expected> for Row {
 pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock) -> Result<(), Failure> {
     let prepared = render::prepare(&args.render, options)?;
     let mut profile = timed::profile(args.render.profile.as_deref(), &prepared)?;
-    if !knows(&profile, prepared.components()) {
+    let paths = prepared.with_renderer(clock, |renderer| Ok(renderer.paths()))?;
+    if !knows(&profile, &paths) {
+        args.render.profile.as_deref().map_or(Ok(()), output::check_place)?;
         console::say("note", "nothing is known of some rays: a few are traced to learn what they cost");
         let budget = Budget::new(clock, clock.now_s() + LEARNING_S, 0.0);
         prepared.with_renderer(clock, |renderer| renderer.render_within(budget, &mut profile))?;
@@ -64,17 +68,16 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
             profile.save(file).map_err(|error| Failure::Cannot(error.to_string()))?;
         }
     }
-    let estimate = expected(&prepared, &profile)?;
+    let estimate = expected(&prepared, &profile, &paths)?;
     report(&prepared, &estimate, args.json)
 }
 
-/// Whether the profile knows all rays that the scene can spawn: children of what was never seen would be missing.
-fn knows(profile: &ProfileCache, components: ComponentSet) -> bool {
-    let known = |kind| profile.cost(kind).is_some();
-    known(RayKind::Primary) && components.iter().all(|component| known(RayKind::Of(component)))
+/// Whether the profile has seen enough paths of this crex under these limits to tell what rays spawn.
+fn knows(profile: &ProfileCache, paths: &str) -> bool {
+    profile.paths_seen(paths) >= LEAST_PATHS
 }
 
-fn expected(prepared: &Prepared, profile: &ProfileCache) -> Result<Estimate, Failure> {
+fn expected(prepared: &Prepared, profile: &ProfileCache, paths: &str) -> Result<Estimate, Failure> {
     let request = &prepared.request;
     let settings = &request.settings;
     let primary = (settings.width * settings.height) as u64 * u64::from(settings.samples);
@@ -85,7 +88,7 @@ fn expected(prepared: &Prepared, profile: &ProfileCache) -> Result<Estimate, Fai
             values.iter().filter(|value| **value >= threshold).count() as f64 / values.len() as f64
         }
     };
-    estimate(&request.program, request.thresholds.as_deref(), primary, share, profile).map_err(Failure::input)
+    estimate(&request.program, request.thresholds.as_deref(), primary, share, (profile, paths)).map_err(Failure::input)
 }
 
 fn report(prepared: &Prepared, estimate: &Estimate, json: bool) -> Result<(), Failure> {

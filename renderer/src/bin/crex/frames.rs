@@ -2,16 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use renderer::picture::Compression;
 use renderer::rad::ViewSpec;
 use renderer::render::Shard;
 use renderer::scene::View;
 use renderer::schedule::{Clock, MonotonicClock};
 
 use crate::console::{self, Failure};
-use crate::output::{self, Output};
+use crate::output::{self, Output, Packing};
 use crate::render::{Args, Prepared};
-use crate::timed::{self, Limit};
+use crate::timed::{self, Beside, Limit};
 
 /// The views of a list, one a line that holds `VIEW=` or begins with `rvu`; the rest of the file is skipped.
 pub(crate) fn views(file: &Path) -> Result<Vec<ViewSpec>, Failure> {
@@ -58,6 +57,7 @@ pub(crate) fn run(
     let waiting: Vec<usize> =
         shard.of(0..views.len()).filter(|&frame| !names(frame).iter().all(|name| name.exists())).collect();
     let stored = args.profile.as_deref();
+    stored.map_or(Ok(()), output::check_place)?;
     let mut profile = None;
     output::clean_up_when_interrupted(waiting.iter().flat_map(|&frame| names(frame)).collect());
     for (done, &frame) in waiting.iter().enumerate() {
@@ -75,7 +75,8 @@ pub(crate) fn run(
                 Some(known) => known,
                 None => timed::profile(stored, &prepared)?,
             };
-            let mut limit = Limit::new(seconds, (stored, known), 0, &prepared, &outputs).beginning_at(begun_s);
+            let mut limit =
+                Limit::new(seconds, (stored, known), Beside::default(), &prepared, &outputs).beginning_at(begun_s);
             let timed = limit.render(&prepared, clock)?;
             limit.write(args.exposure, &prepared, &outputs, &timed.rendering, clock)?;
             limit.save()?;
@@ -83,7 +84,7 @@ pub(crate) fn run(
         } else {
             let rendering = prepared.render(clock, None)?;
             for output in &outputs {
-                output.write(&rendering.film, args.exposure, &prepared.request.provenance, Compression::Zip)?;
+                output.write(&rendering.film, args.exposure, &prepared.request.provenance, Packing::CAREFUL)?;
             }
         }
         console::say("note", &format!("frame {} of {}: {:.2} s", frame + 1, views.len(), clock.now_s() - begun_s));

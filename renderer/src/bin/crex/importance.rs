@@ -171,7 +171,7 @@ fn check(args: &Args) -> Result<(), Failure> {
             let advice = "is read, and would be overwritten: choose another name";
             return Err(Failure::input(format!("{}: {advice}", path.display())));
         }
-        output::check_folder(path)?;
+        output::check_place(path)?;
     }
     Ok(())
 }

@@ -54,7 +54,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let files = args.output.iter().chain(&args.stats).filter(|path| *path != Path::new("-"));
     output::clean_up_when_interrupted(files.cloned().collect());
-    args.stats.iter().try_for_each(|file| output::check_folder(file))?;
+    args.stats.iter().try_for_each(|file| output::check_place(file))?;
     let parts = args.parts.iter().map(|path| Part::open(path)).collect::<Result<Vec<_>, _>>()?;
     match join(parts) {
         Ok(joined) => {

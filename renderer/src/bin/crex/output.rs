@@ -36,7 +36,7 @@ impl Output {
             let advice = "says no picture format: end its name in .exr, .hdr (or .pic) or .png";
             return Err(Failure::input(format!("-o {}: {advice}", path.display())));
         }
-        check_folder(path)?;
+        check_place(path)?;
         Ok(Self::File(path.to_owned()))
     }
 
@@ -48,15 +48,15 @@ impl Output {
         }
     }
 
-    /// Writes a film; an EXR is packed by `compression`.
+    /// Writes a film.
     pub(crate) fn write(
         &self,
         film: &Film,
         exposure: f64,
         provenance: &Provenance,
-        compression: Compression,
+        packing: Packing,
     ) -> Result<(), Failure> {
-        let pictures = Pictures { compression, ..Pictures::of_film(film, exposure, provenance) };
+        let pictures = Pictures { packing, ..Pictures::of_film(film, exposure, provenance) };
         pictures.write(std::slice::from_ref(self), None, [Ok(film)])
     }
 }
@@ -70,20 +70,38 @@ pub(crate) fn checked(paths: &[PathBuf]) -> Result<Vec<Output>, Failure> {
     Ok(outputs)
 }
 
-/// Says early that a file's folder is missing or is none.
-pub(crate) fn check_folder(path: &Path) -> Result<(), Failure> {
+/// How a picture is put on disk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Packing {
+    /// How an EXR is packed.
+    pub(crate) compression: Compression,
+    /// Whether to wait until the disk has it.
+    pub(crate) durable: bool,
+}
+
+impl Packing {
+    /// Small, and waited for.
+    pub(crate) const CAREFUL: Self = Self { compression: Compression::Zip, durable: true };
+}
+
+/// Says early that a file cannot be written: its folder is missing or closed, or its name is a folder's.
+pub(crate) fn check_place(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder {
         Some(folder) if !folder.is_dir() => {
             Err(Failure::Cannot(format!("{}: there is no folder {}", path.display(), folder.display())))
         }
-        _ => Ok(()),
+        _ if path.is_dir() => Err(Failure::Cannot(format!("{}: is a folder: name a file", path.display()))),
+        // What is begun and not committed is removed again.
+        _ => AtomicFile::create(path)
+            .map(drop)
+            .map_err(|error| Failure::Cannot(format!("{}: cannot be written: {error}", path.display()))),
     }
 }
 
 /// Writes a film in the format of the name; EXR has a layer for everything that was reached.
 pub(crate) fn write_film(path: &Path, film: &Film, exposure: f64, provenance: &Provenance) -> Result<(), Failure> {
-    Output::File(path.to_owned()).write(film, exposure, provenance, Compression::Zip)
+    Output::File(path.to_owned()).write(film, exposure, provenance, Packing::CAREFUL)
 }
 
 /// What is known of a picture before its rows come.
@@ -94,7 +112,7 @@ pub(crate) struct Pictures<'a> {
     pub(crate) planes: Vec<Plane>,
     pub(crate) exposure: f64,
     pub(crate) provenance: &'a Provenance,
-    pub(crate) compression: Compression,
+    pub(crate) packing: Packing,
 }
 
 /// A picture being written.
@@ -120,7 +138,7 @@ impl<'a> Pictures<'a> {
     pub(crate) fn of_film(film: &Film, exposure: f64, provenance: &'a Provenance) -> Self {
         let planes = film.planes().map(|(plane, _)| plane).collect();
         let (width, height) = (film.width(), film.height());
-        Self { width, height, planes, exposure, provenance, compression: Compression::Zip }
+        Self { width, height, planes, exposure, provenance, packing: Packing::CAREFUL }
     }
 
     /// Writes a picture, whose rows come in bands from the top, to all `outputs` at once, and with `parts` each plane as a picture
@@ -179,8 +197,14 @@ impl<'a> Pictures<'a> {
     }
 
     fn header(&self, layers: Vec<String>) -> Header {
-        let (exposure, compression) = (self.exposure, self.compression);
-        Header { layers, exposure, compression, ..Header::new(self.width, self.height, self.provenance.clone()) }
+        let (exposure, Packing { compression, durable }) = (self.exposure, self.packing);
+        Header {
+            layers,
+            exposure,
+            compression,
+            durable,
+            ..Header::new(self.width, self.height, self.provenance.clone())
+        }
     }
 
     fn put(&self, sink: &mut Sink, band: &Film, rows: Range<usize>, beauty: &[Pixel]) -> Result<(), Error> {

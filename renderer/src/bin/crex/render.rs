@@ -15,7 +15,7 @@ use renderer::schedule::{Clock, MonotonicClock};
 
 use crate::console::Failure;
 use crate::options::RadianceOptions;
-use crate::output::{self, Output, Pictures};
+use crate::output::{self, Output, Packing, Pictures};
 use crate::scene_files::SceneArgs;
 use crate::stats::Stats;
 use crate::{frames, snapshots, timed};
@@ -143,7 +143,8 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
     }
     if let Some((timed, compression)) = timed {
         for output in &outputs {
-            output.write(&timed.rendering.film, args.exposure, &request.provenance, compression)?;
+            let packing = Packing { compression, durable: true };
+            output.write(&timed.rendering.film, args.exposure, &request.provenance, packing)?;
         }
         write_parts(args, &prepared, &outputs, &timed.rendering.film)?;
         let account = timed.rendering.account();
@@ -165,7 +166,7 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         }
     };
     for output in &outputs {
-        output.write(&rendering.film, args.exposure, &request.provenance, Compression::Zip)?;
+        output.write(&rendering.film, args.exposure, &request.provenance, Packing::CAREFUL)?;
     }
     write_parts(args, &prepared, &outputs, &rendering.film)?;
     let account = rendering.account();
@@ -183,9 +184,13 @@ fn run_timed(
     clock: &MonotonicClock,
 ) -> Result<(), Failure> {
     let request = &prepared.request;
-    let beside =
-        usize::from(args.stats.is_some()) + usize::from(args.ran.is_some()) + usize::from(args.parts.is_some());
     let file = args.profile.as_deref();
+    let extension = format_beside(outputs[0].path());
+    let beside = timed::Beside {
+        stats: args.stats.is_some(),
+        ran: args.ran.as_deref().and_then(Format::of_name),
+        parts: args.parts.as_ref().and_then(|folder| Format::of_name(&folder.join("part").with_extension(extension))),
+    };
     let mut limit = timed::Limit::new(seconds, (file, timed::profile(file, prepared)?), beside, prepared, outputs);
     let timed = limit.render(prepared, clock)?;
     limit.write(args.exposure, prepared, outputs, &timed.rendering, clock)?;
@@ -194,7 +199,9 @@ fn run_timed(
     write_beside(args, prepared, &account)?;
     limit.save()?;
     let stats = Stats::new(&request.program, &request.settings, &account, timed::threads(&request.settings));
-    write_stats(args, prepared, stats.with_time(Some(limit.seconds()), limit.stats(&timed)), clock)
+    write_stats(args, prepared, stats.with_time(Some(limit.seconds()), limit.stats(&timed)), clock)?;
+    // All files are closed. To give back scene and picture piece by piece would take tens of milliseconds more.
+    std::process::exit(0)
 }
 
 /// Writes the parts of the picture, if they are asked for.
@@ -232,10 +239,11 @@ fn outputs(args: &Args) -> Result<Vec<Output>, Failure> {
         return Err(Failure::input("--ran wants a file, not standard output"));
     }
     for file in args.stats.iter().chain(&args.ran) {
-        output::check_folder(file)?;
+        output::check_place(file)?;
         paths.push(file.clone());
     }
     paths.push(shards::scratch(&outputs));
+    args.profile.as_deref().map_or(Ok(()), output::check_place)?;
     output::clean_up_when_interrupted(paths);
     Ok(outputs)
 }
@@ -264,7 +272,9 @@ fn write_stats(args: &Args, prepared: &Prepared, stats: Stats, clock: &Monotonic
     let Some(file) = &args.stats else { return Ok(()) };
     let stats = stats.with_scene(prepared.scene_hash(), prepared.request.modulation()).with_wall_s(clock.now_s());
     let text = serde_json::to_string_pretty(&stats).map_err(|error| Failure::Cannot(error.to_string()))?;
-    AtomicFile::write_all(file, format!("{text}\n").as_bytes())
+    // Under a time limit nobody waits for the disk.
+    let write = if args.time.is_some() { AtomicFile::write_all_unsynced } else { AtomicFile::write_all };
+    write(file, format!("{text}\n").as_bytes())
         .map_err(|error| Failure::Cannot(format!("{}: cannot be written: {error}", file.display())))
 }
 

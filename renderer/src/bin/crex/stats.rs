@@ -57,6 +57,8 @@ struct StageStats {
     /// Summed over threads; under a time limit by the clock.
     seconds: f64,
     predicted_s: Option<f64>,
+    /// What its task was predicted not to exceed, 19 times in 20.
+    bound_s: Option<f64>,
     skipped: SkippedStats,
 }
 
@@ -124,16 +126,18 @@ impl StageStats {
             spawned: counts(&report.spawned),
             seconds: report.seconds,
             predicted_s: None,
+            bound_s: None,
             skipped: SkippedStats::No(false),
         }
     }
 
     fn of_row(program: &Program, row: &StageRow) -> Self {
-        let StageRow { stage, report, predicted_s, skipped } = row;
+        let StageRow { stage, report, predicted_s, bound_s, skipped } = row;
         let (start, end) = stage.span;
         Self {
             group: stage.group.map(|group| program.group_text(group).to_owned()),
             predicted_s: *predicted_s,
+            bound_s: *bound_s,
             skipped: match skipped {
                 Some(Skipped::Time) => SkippedStats::Because("time"),
                 None => SkippedStats::No(false),

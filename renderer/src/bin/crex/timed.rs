@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use stimuli::Sha256;
 
 use crate::console::{self, Failure};
-use crate::output::Output;
+use crate::output::{Output, Packing};
 use crate::render::Prepared;
 
 /// What a writer costs before it was measured, in seconds for each byte of pixels: EXR at 1200 x 1200 with 24 channels,
@@ -30,10 +30,25 @@ const WRITING_TIME: f64 = 0.05;
 const UNMEASURED: f64 = 2.0;
 
 /// Seconds between the start of the process and of its clock, and between the last file and the end of the process.
-const EDGES_S: f64 = 0.004;
+const EDGES_S: f64 = 0.003;
+
+/// Seconds for each byte of memory that the system takes back at the end.
+const TAKING_BACK_S: f64 = 20e-12;
+
+/// The part of the bound that is not used, against what the system does meanwhile: the programs of a machine take turns. Of bounds
+/// below a second as much less as they are shorter, since there is less time in which something can happen.
+const MARGIN: f64 = 0.02;
 
 /// Seconds to store a profile or what was done.
-const SMALL_FILE_S: f64 = 0.004;
+const SMALL_FILE_S: f64 = 0.002;
+
+/// What is written besides the pictures: its format where it is pictures too.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Beside {
+    pub(crate) stats: bool,
+    pub(crate) ran: Option<Format>,
+    pub(crate) parts: Option<Format>,
+}
 
 /// A time limit and what is known of costs.
 pub(crate) struct Limit<'a> {
@@ -89,18 +104,21 @@ impl<'a> Limit<'a> {
     pub(crate) fn new(
         seconds: f64,
         (file, profile): (Option<&'a Path>, ProfileCache),
-        small_files: usize,
+        beside: Beside,
         prepared: &Prepared,
         outputs: &[Output],
     ) -> Self {
-        let sizes: Vec<(Option<Format>, f64)> = outputs.iter().map(|output| bytes(output, prepared)).collect();
+        let mut sizes: Vec<(Option<Format>, f64)> = outputs.iter().map(|output| bytes(output, prepared)).collect();
+        let Settings { width, height, .. } = prepared.request.settings;
+        let plane = (width * height * 12) as f64;
+        sizes.extend(beside.ran.map(|format| (Some(format), plane)));
+        sizes.extend(beside.parts.map(|format| (Some(format), plane * prepared.planes().len() as f64)));
         let mut chosen = (Compression::Uncompressed, f64::INFINITY);
         for (compression, name, guess) in WRITING_S {
             let cost = |(format, bytes): &(Option<Format>, f64)| {
                 let name = writer_name(*format, name);
                 let guess = if *format == Some(Format::Exr) { guess } else { WRITING_S[0].2 };
-                let known = profile.predict_writer(name, *bytes as u64).map(|it| profile.bound_s(&it));
-                known.unwrap_or(UNMEASURED * guess * bytes)
+                profile.kept_s(name, *bytes as u64).unwrap_or(UNMEASURED * guess * bytes)
             };
             let all: f64 = sizes.iter().map(cost).sum();
             chosen = (compression, all);
@@ -108,8 +126,8 @@ impl<'a> Limit<'a> {
                 break;
             }
         }
-        let small = small_files + usize::from(file.is_some());
-        let reserve_s = chosen.1 + EDGES_S + small as f64 * SMALL_FILE_S;
+        let small = usize::from(beside.stats) + usize::from(file.is_some());
+        let reserve_s = chosen.1 + EDGES_S + small as f64 * SMALL_FILE_S + MARGIN * seconds * seconds.min(1.0);
         Self { seconds, begun_s: 0.0, file, profile, compression: chosen.0, reserve_s }
     }
 
@@ -127,8 +145,9 @@ impl<'a> Limit<'a> {
             console::say("warning", &message);
         }
         prepared.with_renderer(clock, |renderer| {
-            say_if_too_large(renderer.timed_bytes());
-            renderer.render_within(budget, &mut self.profile)
+            let bytes = renderer.timed_bytes();
+            say_if_too_large(bytes);
+            renderer.render_within(budget.with_more_reserve(TAKING_BACK_S * bytes), &mut self.profile)
         })
     }
 
@@ -143,7 +162,8 @@ impl<'a> Limit<'a> {
     ) -> Result<(), Failure> {
         for output in outputs {
             let begun_s = clock.now_s();
-            output.write(&rendering.film, exposure, &prepared.request.provenance, self.compression)?;
+            let packing = Packing { compression: self.compression, durable: false };
+            output.write(&rendering.film, exposure, &prepared.request.provenance, packing)?;
             let (format, bytes) = bytes(output, prepared);
             let name = writer_name(format, compression_name(self.compression));
             self.profile.observe_writer(name, bytes as u64, clock.now_s() - begun_s);
@@ -211,10 +231,16 @@ pub(crate) struct TimedStats {
     rounds: Vec<RoundStats>,
     /// Tiles times levels of the refinement.
     units: u64,
+    /// Those of them that were given up when the time was over.
+    #[serde(default)]
+    missing: Vec<u64>,
     /// Rays that the refinement traced, primary ones included.
     refined_rays: u64,
     /// Complete samples of a pixel, on average, from the refinement.
     refined_samples: f64,
+    /// Rays that were traced only to learn what they cost.
+    #[serde(default)]
+    probed_rays: u64,
     compression: String,
     /// Seconds kept for writing.
     reserve_s: f64,
@@ -240,8 +266,10 @@ impl TimedStats {
         Self {
             rounds: rounds.collect(),
             units: timed.record.units,
+            missing: timed.record.missing.clone(),
             refined_rays: timed.refined.rays,
             refined_samples: timed.refined_samples,
+            probed_rays: timed.probed_rays,
             compression: compression_name(compression).to_owned(),
             reserve_s,
         }
@@ -314,7 +342,7 @@ pub(crate) fn replay(
         tiles: round.tiles,
         ran: round.ran.chars().map(|ran| ran == '1').collect(),
     });
-    let record = TimedRecord { rounds: rounds.collect(), units: timed.units };
+    let record = TimedRecord { rounds: rounds.collect(), units: timed.units, missing: timed.missing };
     let samples: u64 = record.rounds.iter().map(|round| u64::from(round.samples)).sum();
     if samples > u64::from(settings.samples) {
         let message = format!("--replay {name}: its rounds have {samples} samples, more than its --spp");

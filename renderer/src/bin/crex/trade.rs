@@ -148,7 +148,7 @@ fn check_outputs(paths: &[PathBuf]) -> Result<(), Failure> {
         if kind(path).is_none() {
             return Err(Failure::input(format!("{}: the curve is written as .csv, .json or .svg", path.display())));
         }
-        output::check_folder(path)?;
+        output::check_place(path)?;
     }
     output::clean_up_when_interrupted(paths.to_vec());
     Ok(())

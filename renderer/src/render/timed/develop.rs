@@ -12,7 +12,6 @@ use crate::reconstruct::fill;
 use super::super::Renderer;
 use super::super::outcome::Outcome;
 use super::RoundRecord;
-use super::ladder::Level;
 use super::refine::Refinement;
 use super::round::{Round, State};
 
@@ -28,6 +27,8 @@ pub(super) struct Merger {
     clean: bool,
     records: Vec<RoundRecord>,
     outcome: Option<Outcome>,
+    /// Rays that were traced only to learn what they cost.
+    probed_rays: u64,
 }
 
 /// Where a plane's samples come from.
@@ -52,7 +53,7 @@ impl Merger {
         let sums = tiles.iter().map(empty).collect();
         let direct = vec![0; tiles.len()];
         let layers = PerComponent::from_fn(|_| (State::Nothing, 0));
-        Self { tiles, sums, direct, layers, clean: true, records: Vec::new(), outcome: None }
+        Self { tiles, sums, direct, layers, clean: true, records: Vec::new(), outcome: None, probed_rays: 0 }
     }
 
     /// Adds a round's samples: to a component's plane only if no other round traced more of its rays.
@@ -76,6 +77,7 @@ impl Merger {
         for (samples, sums) in self.direct.iter_mut().zip(&round.sums) {
             *samples += if sums.is_some() { round.record.samples } else { 0 };
         }
+        self.probed_rays += round.probed_rays;
         self.records.push(round.record);
         match &mut self.outcome {
             None => self.outcome = Some(round.outcome),
@@ -94,9 +96,19 @@ impl Merger {
         });
     }
 
+    /// Whether the rounds alone give every plane samples in every pixel.
+    pub(super) fn is_complete(&self) -> bool {
+        self.clean && !self.direct.contains(&0)
+    }
+
     /// What was decided in the rounds.
     pub(super) fn records(&self) -> &[RoundRecord] {
         &self.records
+    }
+
+    /// Rays that were traced only to learn what they cost.
+    pub(super) fn probed_rays(&self) -> u64 {
+        self.probed_rays
     }
 
     /// What the rounds did; none without a round.
@@ -106,7 +118,7 @@ impl Merger {
 
     /// Makes the film.
     pub(super) fn film(&self, renderer: &Renderer<'_>, refinement: &Refinement) -> Film {
-        let passes = Level::passes(refinement.levels());
+        let passes = refinement.passes();
         let of_component = |component: Component| {
             let (state, samples) = self.layers[component];
             if state == State::Nothing || self.direct.contains(&0) {

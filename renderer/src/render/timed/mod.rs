@@ -10,9 +10,10 @@ mod ladder;
 mod refine;
 mod round;
 
+use crate::color::Rgb;
 use crate::crex::ThresholdError;
 use crate::schedule::{Budget, ProfileCache};
-use crate::transport::{Modulation, Rule, Tracer};
+use crate::transport::{Limits, Modulation, Rule, Tracer};
 use crate::work::WorkReport;
 
 use super::outcome::{Outcome, add_report, reached};
@@ -54,6 +55,9 @@ pub struct TimedRecord {
     pub rounds: Vec<RoundRecord>,
     /// How far the refinement came, in tiles times levels.
     pub units: u64,
+    /// Which of these units were under way when the time was over, and are not in the picture; rising, at most one for each
+    /// thread.
+    pub missing: Vec<u64>,
 }
 
 /// What a rendering within a time limit made.
@@ -68,6 +72,8 @@ pub struct TimedRendering {
     pub refined: WorkReport,
     /// Samples of the whole crex for a pixel, on average, from the refinement.
     pub refined_samples: f64,
+    /// Rays that were traced only to learn what they cost: copies, whose light was forgotten.
+    pub probed_rays: u64,
 }
 
 impl Renderer<'_> {
@@ -93,13 +99,18 @@ impl Renderer<'_> {
     fn within(&self, budget: Budget<'_>, profile: &mut ProfileCache) -> Result<TimedRendering, ThresholdError> {
         let tracer = self.tracer();
         let complete = self.refining();
-        let budget = budget.with_more_reserve(self.develop_s());
+        let (end, known) = (budget, profile.clone());
+        let budget = end.with_more_reserve(self.chore_s(FILL, &known));
         let left_s = || budget.left_s();
         let mut refinement = Refinement::new(self, self.settings.samples);
         let tiles = self.tiles().len() as u64;
         let sprinkle_ends_s = budget.now_s() + SPRINKLE_TIME * budget.left_s();
         let sprinkle = || (sprinkle_ends_s - budget.now_s()).min(budget.left_s());
-        refinement.run(self, &complete, SPRINKLED * tiles, &sprinkle, profile)?;
+        refinement.run(self, &complete, SPRINKLED * tiles, (&sprinkle, &left_s), profile)?;
+        // What comes at the end will be as slow as what came first.
+        let slower = slower(&refinement, &known, profile);
+        let end = end.slowed(slower);
+        let kept = |chore| end.with_more_reserve(slower * self.chore_s(chore, &known));
         let mut merger = Merger::new(self);
         let mut first = 0;
         let all = self.settings.samples;
@@ -107,13 +118,22 @@ impl Renderer<'_> {
         while first < all {
             let samples = at_once.min(all - first);
             let part = f64::from(samples) / f64::from(all - first);
-            let share = budget.with_more_reserve((1.0 - part) * budget.left_s().max(0.0));
-            let Some(round) = Round::run(self, &tracer, first, samples, (share, budget), profile)? else { break };
+            let whole = kept(FILL).with_more_reserve(slower * self.chore_s(GATHER, &known));
+            let share = whole.with_more_reserve((1.0 - part) * whole.left_s().max(0.0));
+            let Some(round) = Round::run(self, &tracer, first, samples, (share, whole), profile)? else { break };
+            let ended_s = round.ended_s;
             merger.add(round);
+            profile.observe_writer(GATHER, self.plane_bytes(), budget.now_s() - ended_s);
             first += samples;
         }
-        refinement.run(self, &complete, u64::MAX, &left_s, profile)?;
-        Ok(self.developed(&merger, refinement))
+        let budget = kept(if merger.is_complete() { DEVELOP } else { FILL });
+        let left_s = || budget.left_s();
+        refinement.run(self, &complete, u64::MAX, (&left_s, &left_s), profile)?;
+        let ended_s = budget.now_s();
+        let chore = if merger.is_complete() || refinement.passes() > 0 { DEVELOP } else { FILL };
+        let developed = self.developed(merger, refinement);
+        profile.observe_writer(chore, self.plane_bytes(), budget.now_s() - ended_s);
+        Ok(developed)
     }
 
     fn again(&self, record: &TimedRecord) -> Result<TimedRendering, ThresholdError> {
@@ -123,16 +143,18 @@ impl Renderer<'_> {
         for round in &record.rounds {
             merger.add(Round::replay(self, &tracer, round)?);
         }
-        let mut refinement = Refinement::new(self, self.settings.samples);
+        let mut refinement = Refinement::new(self, self.settings.samples).without(&record.missing);
         // Nobody asks what this learns.
         let mut profile = ProfileCache::new("", "");
-        refinement.run(self, &complete, record.units, &|| f64::INFINITY, &mut profile)?;
-        Ok(self.developed(&merger, refinement))
+        let left_s = || f64::INFINITY;
+        refinement.run(self, &complete, record.units, (&left_s, &left_s), &mut profile)?;
+        Ok(self.developed(merger, refinement))
     }
 
-    fn developed(&self, merger: &Merger, refinement: Refinement) -> TimedRendering {
+    fn developed(&self, merger: Merger, refinement: Refinement) -> TimedRendering {
         let mut film = merger.film(self, &refinement);
-        let record = TimedRecord { rounds: merger.records().to_vec(), units: refinement.units() };
+        let (units, missing) = refinement.units();
+        let record = TimedRecord { rounds: merger.records().to_vec(), units, missing: missing.to_vec() };
         let Outcome { primary, rows, .. } = &refinement.outcome;
         let mut refined = *primary;
         rows.iter().for_each(|row| add_report(&mut refined, &row.report));
@@ -143,7 +165,7 @@ impl Renderer<'_> {
         film.keep(shown);
         let Outcome { primary, rows: stages, left, stopped } = outcome;
         let rendering = Rendering { film, primary, stages, left, stopped };
-        TimedRendering { rendering, record, refined, refined_samples }
+        TimedRendering { rendering, record, refined, refined_samples, probed_rays: merger.probed_rays() }
     }
 
     /// What traces single samples: continuous importance, which chooses among many, becomes all samples wherever the map is
@@ -178,13 +200,56 @@ impl Renderer<'_> {
         pixels * (planes * (4.0 * 24.0 + 12.0) + waiting)
     }
 
-    /// Seconds to keep for making the film of the sums, by what that took at most where it was measured (a 2 GHz core).
-    fn develop_s(&self) -> f64 {
-        let planes = 2.0 + self.stored().iter().count() as f64;
-        let pixels = (self.settings.width * self.settings.height) as f64;
-        DEVELOP_S * planes * pixels
+    /// What paths are like, for the profile: the crex that they run and the limits that end them.
+    #[must_use]
+    pub fn paths(&self) -> String {
+        let Limits { reflections, least_weight, diffuse, glossy_threshold, diffuse_rays, glossy_rays } =
+            self.settings.limits;
+        let diffuse = diffuse.map_or(String::new(), |most| format!(" -ab {most}"));
+        let (ends, splits) =
+            (format!("-lr {reflections} -lw {least_weight}"), format!("-ad {diffuse_rays} -ss {glossy_rays}"));
+        format!("{} {ends}{diffuse} -st {glossy_threshold} {splits}", self.program.text())
+    }
+
+    /// Bytes of the sums of all planes.
+    fn plane_bytes(&self) -> u64 {
+        let planes = 2 + self.stored().iter().count();
+        (self.settings.width * self.settings.height * planes * size_of::<Rgb>()) as u64
+    }
+
+    /// Seconds to keep for something that is done with the sums of all planes when the time is over.
+    fn chore_s(&self, name: &str, profile: &ProfileCache) -> f64 {
+        let bytes = self.plane_bytes();
+        profile.kept_s(name, bytes).unwrap_or(CHORE_S * bytes as f64)
     }
 }
 
-/// Seconds for each pixel and plane to merge and fill, generously.
-const DEVELOP_S: f64 = 60e-9;
+/// Bringing a round's sums together, and making the film, of samples in every pixel or with pixels to be filled in, by their
+/// names in the profile.
+const GATHER: &str = "gather";
+const DEVELOP: &str = "develop";
+const FILL: &str = "fill";
+
+/// Seconds that these take for each byte of the planes before they were measured, generously (a 2 GHz core).
+const CHORE_S: f64 = 0.7e-9;
+
+/// The seconds of a sprinkle, by its name in the profile, for each nanosecond that its rays were expected to take: more than
+/// rays of rounds, which run in larger sets.
+const SPRINKLE: &str = "sprinkle";
+
+/// A slower machine than this is a short interruption, not what is to be expected.
+const MOST_SLOWED: f64 = 4.0;
+
+/// A sprinkle shorter than this tells nothing of the machine.
+const LEAST_SPRINKLE_S: f64 = 2e-3;
+
+/// How many times slower the machine is than it used to be, by the sprinkle: what other programs do to it now. At least 1, and
+/// 1 while nothing is known.
+fn slower(sprinkle: &Refinement, known: &ProfileCache, profile: &mut ProfileCache) -> f64 {
+    let pace = sprinkle.pace(known).filter(|(_, expected_s)| *expected_s > LEAST_SPRINKLE_S);
+    let Some((taken_s, expected_s)) = pace else { return 1.0 };
+    let expected_ns = (1e9 * expected_s).round() as u64;
+    profile.observe_writer(SPRINKLE, expected_ns, taken_s);
+    let usual = known.predict_writer(SPRINKLE, expected_ns);
+    usual.filter(|usual| usual.mean_s > 0.0).map_or(1.0, |usual| (taken_s / usual.mean_s).clamp(1.0, MOST_SLOWED))
+}

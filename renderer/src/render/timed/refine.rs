@@ -14,8 +14,8 @@ use super::super::Renderer;
 use super::super::outcome::Outcome;
 use super::ladder::{Level, scrambled};
 
-/// A unit is begun if this many times its expected seconds are left: units differ from place to place in a picture.
-const GUARD: f64 = 3.0;
+/// Seconds left for something; negative once they are over.
+type Left<'a> = &'a (dyn Fn() -> f64 + Sync);
 
 /// What a tile has so far.
 struct TileSums {
@@ -32,8 +32,10 @@ pub(super) struct Refinement {
     order: Vec<usize>,
     /// The sample number of its first pass.
     first_sample: u32,
-    /// Units that are done, a unit being a tile at a level; always the first so many.
+    /// Units that are behind it, a unit being a tile at a level: the first so many, all done but the `missing`.
     units: u64,
+    /// Units that were under way when the time was over, at most one for each thread, and left no trace.
+    missing: Vec<u64>,
     /// What they did.
     pub(super) outcome: Outcome,
     /// Thread seconds for a share of a tile, and the share.
@@ -49,57 +51,93 @@ impl Refinement {
             Mutex::new(TileSums { sums, weights: vec![0; tile.pixels()] })
         };
         let (sums, order) = (tiles.iter().map(empty).collect(), scrambled(&tiles));
-        Self { tiles, sums, order, first_sample, units: 0, outcome: Outcome::default(), spent: (0.0, 0.0) }
+        Self {
+            tiles,
+            sums,
+            order,
+            first_sample,
+            units: 0,
+            missing: Vec::new(),
+            outcome: Outcome::default(),
+            spent: (0.0, 0.0),
+        }
     }
 
-    /// Units that are done.
-    pub(super) fn units(&self) -> u64 {
-        self.units
+    /// The same that leaves out some units.
+    pub(super) fn without(self, missing: &[u64]) -> Self {
+        Self { missing: missing.to_vec(), ..self }
+    }
+
+    /// Units that are behind it, and which of them are not done.
+    pub(super) fn units(&self) -> (u64, &[u64]) {
+        (self.units, &self.missing)
     }
 
     /// Levels that are done.
     pub(super) fn levels(&self) -> u64 {
-        self.units / self.tiles.len() as u64
+        let first_missing = self.missing.iter().min();
+        first_missing.map_or(self.units, |unit| self.units.min(*unit)) / self.tiles.len() as u64
     }
 
-    /// Goes on until so many `units` are done or `left_s` says that no time is left. The very first unit is done in any case.
-    /// Returns whether time was left. What was learnt about costs goes into the `profile`.
+    /// Whole passes that are done.
+    pub(super) fn passes(&self) -> u64 {
+        Level::passes(self.levels())
+    }
+
+    /// Seconds that its rays took, and those that a profile says they take; none if it does not know them all.
+    pub(super) fn pace(&self, known: &ProfileCache) -> Option<(f64, f64)> {
+        let Outcome { primary, rows, .. } = &self.outcome;
+        let threads = rayon::current_num_threads() as f64;
+        let parts = rows.iter().map(|row| (RayKind::Of(row.stage.component), &row.report));
+        let (mut taken_s, mut expected_s) = (0.0, 0.0);
+        for (kind, report) in std::iter::once((RayKind::Primary, primary)).chain(parts) {
+            taken_s += report.seconds / threads;
+            expected_s += known.predict(kind, report.rays)?.mean_s;
+        }
+        (expected_s > 0.0).then_some((taken_s, expected_s))
+    }
+
+    /// Goes on until so many `units` are behind it or no time is left: a unit is begun while it is expected to fit into
+    /// `left_s`, and given up when `whole_s` is over. The very first unit is done in any case. What was learnt about costs goes
+    /// into the `profile`.
     pub(super) fn run(
         &mut self,
         renderer: &Renderer<'_>,
         tracer: &Tracer<'_>,
         units: u64,
-        left_s: &(dyn Fn() -> f64 + Sync),
+        (left_s, whole_s): (Left<'_>, Left<'_>),
         profile: &mut ProfileCache,
-    ) -> Result<bool, ThresholdError> {
+    ) -> Result<(), ThresholdError> {
+        let paths = renderer.paths();
         let mut by_thread = vec![Outcome::default(); rayon::current_num_threads()];
         let mut in_time = true;
         while in_time && self.units < units {
-            let index = self.levels();
+            let index = self.units / self.tiles.len() as u64;
             let end = ((index + 1) * self.tiles.len() as u64).min(units);
-            in_time = self.run_level(renderer, tracer, Level::new(index), end, left_s, &mut by_thread)?;
+            in_time = self.run_level(renderer, tracer, Level::new(index), end, (left_s, whole_s), &mut by_thread)?;
         }
         // One observation for each thread: those of single levels would tell more about the system's interruptions.
         for outcome in &by_thread {
-            learn(profile, outcome, by_thread.len() as f64);
+            learn(profile, &paths, outcome, by_thread.len() as f64);
         }
-        Ok(in_time)
+        Ok(())
     }
 
-    /// As [`Self::run`], within a level, which ends before unit `end`.
+    /// As [`Self::run`], within a level, which ends before unit `end`. Whether there was time for all of it.
     fn run_level(
         &mut self,
         renderer: &Renderer<'_>,
         tracer: &Tracer<'_>,
         level: Level,
         end: u64,
-        left_s: &(dyn Fn() -> f64 + Sync),
+        (left_s, whole_s): (Left<'_>, Left<'_>),
         by_thread: &mut [Outcome],
     ) -> Result<bool, ThresholdError> {
         let first = self.units;
-        let guard_s = if self.spent.1 > 0.0 { GUARD * self.spent.0 / self.spent.1 * level.share() } else { 0.0 };
+        let unit_s = if self.spent.1 > 0.0 { self.spent.0 / self.spent.1 * level.share() } else { 0.0 };
         let next = AtomicU64::new(first);
         let out_of_time = AtomicBool::new(false);
+        let given_up = Mutex::new(Vec::new());
         let sample = self.first_sample.saturating_add(level.pass);
         let ranks = level.ranks.0..level.ranks.1;
         let this = &*self;
@@ -108,10 +146,9 @@ impl Refinement {
             let mut parcel: Option<Parcel> = None;
             loop {
                 let forced = first == 0 && next.load(Ordering::Relaxed) == 0;
-                if !forced && left_s() <= guard_s {
+                if !forced && left_s() <= unit_s {
                     out_of_time.store(true, Ordering::Relaxed);
                 }
-                // Every unit that is claimed is done, so those that are done are the first ones.
                 if !forced && out_of_time.load(Ordering::Relaxed) {
                     break;
                 }
@@ -119,12 +156,20 @@ impl Refinement {
                 if unit >= end {
                     break;
                 }
+                if this.missing.contains(&unit) {
+                    continue;
+                }
                 let place = this.order[(unit % this.tiles.len() as u64) as usize];
                 let tile = this.tiles[place];
                 let parcel = parcel.get_or_insert_with(|| renderer.parcel(tile, &(0..0)));
                 parcel.restart(tile, sample..sample + 1, renderer.stored(), renderer.has_ambient());
-                outcome.add(renderer.run_alone(tracer, &ranks, parcel, &mut workspace)?);
+                let go = || unit == 0 || whole_s() > 0.0;
                 // A poisoned lock means that a thread panicked, and then so does this one.
+                let Some(done) = renderer.run_alone_while(tracer, &ranks, parcel, &mut workspace, &go)? else {
+                    given_up.lock().expect("no thread panicked").push(unit);
+                    continue;
+                };
+                outcome.add(done);
                 let mut sums = this.sums[place].lock().expect("no thread panicked");
                 parcel.add_to(&mut sums.sums, renderer.settings.ambient);
                 for (pixel, weight) in sums.weights.iter_mut().enumerate() {
@@ -135,14 +180,18 @@ impl Refinement {
             Ok(outcome)
         });
         self.units = next.into_inner().min(end);
+        let mut given_up = given_up.into_inner().expect("no thread panicked");
+        let undone = given_up.len();
+        self.missing.append(&mut given_up);
+        self.missing.sort_unstable();
         for (outcome, sum) in done.into_iter().zip(by_thread) {
             let outcome = outcome?;
             sum.add(outcome.clone());
             self.spent.0 += outcome.primary.seconds + outcome.rows.iter().map(|row| row.report.seconds).sum::<f64>();
             self.outcome.add(outcome);
         }
-        self.spent.1 += level.share() * (self.units - first) as f64;
-        Ok(self.units == end)
+        self.spent.1 += level.share() * (self.units - first - undone as u64) as f64;
+        Ok(self.units == end && undone == 0)
     }
 
     /// A tile's sums of a plane and the samples in them, pixel by pixel.
@@ -157,15 +206,17 @@ impl Refinement {
     }
 }
 
-/// Teaches the profile what rays cost: so many threads share the work, so a ray takes that part of its thread's time.
-fn learn(profile: &mut ProfileCache, outcome: &Outcome, threads: f64) {
+/// Teaches the profile what rays cost and spawn: so many threads share the work, so a ray takes that part of its thread's time.
+fn learn(profile: &mut ProfileCache, paths: &str, outcome: &Outcome, threads: f64) {
     let Outcome { primary, rows, .. } = outcome;
-    profile.observe(RayKind::Primary, primary.rays, primary.seconds / threads, &primary.spawned);
+    profile.observe(RayKind::Primary, primary.rays, primary.seconds / threads);
+    profile.observe_children(paths, RayKind::Primary, primary.rays, &primary.spawned);
     for component in Component::ALL {
         let mut sum = crate::work::WorkReport::default();
         for row in rows.iter().filter(|row| row.stage.component == component) {
             super::super::outcome::add_report(&mut sum, &row.report);
         }
-        profile.observe(RayKind::Of(component), sum.rays, sum.seconds / threads, &sum.spawned);
+        profile.observe(RayKind::Of(component), sum.rays, sum.seconds / threads);
+        profile.observe_children(paths, RayKind::Of(component), sum.rays, &sum.spawned);
     }
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::component::{Component, PerComponent};
 use crate::crex::ThresholdError;
 use crate::film::Planes;
-use crate::schedule::{Budget, ProfileCache, RayKind, Scheduler, TimedScheduler, TimedWork};
+use crate::schedule::{Budget, ProfileCache, RayKind, Scheduler, Skipped, TimedScheduler, TimedWork};
 use crate::transport::{Parcel, Tracer, Workspace};
 use crate::work::{BinOccupancy, Stage, StageKey, Work, WorkReport};
 
@@ -19,15 +19,16 @@ use super::ladder::scrambled;
 /// A task is made undoable if it was predicted to need more than this part of the time left: only then can it overrun it.
 const RISKY: f64 = 0.1;
 
-/// A parcel is begun if this many times its expected seconds are left.
-const GUARD: f64 = 3.0;
-
 /// What a round brought.
 pub(super) struct Round {
     /// The sums of every tile; of tiles whose primary rays were not traced there are none.
     pub(super) sums: Vec<Option<Planes>>,
     pub(super) outcome: Outcome,
     pub(super) record: RoundRecord,
+    /// When its last task had ended, by the budget's clock.
+    pub(super) ended_s: f64,
+    /// Rays that were traced only to learn what they cost.
+    pub(super) probed_rays: u64,
 }
 
 /// What the parcels have brought, and the rays that wait in them.
@@ -38,12 +39,19 @@ struct Batch<'a, 'r> {
     renderer: &'a Renderer<'r>,
     tracer: &'a Tracer<'r>,
     parcels: Vec<Parcel>,
-    /// What the picture was before the task under way, and the rays that waited: for tasks that may be cut off.
+    /// What the picture was before the task under way, and the rays that waited: for tasks that are likely to be cut off.
     before: Option<Standing>,
     /// The same, once the task was cut off: what the parcels hold since then counts for nothing.
     cut: Option<Standing>,
+    /// A task was cut off that was not likely to be: there is no picture but that of the primary rays, which left so many
+    /// rays waiting.
+    spoilt: Option<PerComponent<u64>>,
+    /// Rays that the primary rays left waiting.
+    first_left: PerComponent<u64>,
     /// What probes did for the task under way, and the part of each bin that they took.
     probed: PerComponent<(WorkReport, f64)>,
+    /// Rays of all probes.
+    probed_rays: u64,
 }
 
 impl Round {
@@ -65,10 +73,11 @@ impl Round {
         }
         let mut batch = Batch::new(renderer, tracer, first_sample, samples);
         let begun_s = whole.now_s();
-        let guard_s = GUARD * predicted.map_or(0.0, |it| it.mean_s) / batch.parcels.len() as f64 * threads();
-        let (primary, tiles) = batch.trace_primary(batch.parcels.len(), &|| whole.left_s() > guard_s);
+        let threads = rayon::current_num_threads() as f64;
+        let parcel_s = predicted.map_or(0.0, |it| it.mean_s) / batch.parcels.len() as f64 * threads;
+        let (primary, tiles) = batch.trace_primary(batch.parcels.len(), &|| whole.left_s() > parcel_s);
         let primary = WorkReport { seconds: whole.now_s() - begun_s, ..primary };
-        profile.observe(RayKind::Primary, primary.rays, primary.seconds, &primary.spawned);
+        profile.observe(RayKind::Primary, primary.rays, primary.seconds);
         if let Some(predicted) = predicted {
             profile.record(&predicted, primary.seconds);
         }
@@ -89,10 +98,17 @@ impl Round {
             stopped = scheduler.stopped().to_vec();
             rows = scheduler.into_rows();
         }
+        let ended_s = whole.now_s();
+        if batch.spoilt.is_some() {
+            for row in &mut rows {
+                (row.report, row.skipped) = (WorkReport::default(), Some(Skipped::Time));
+            }
+        }
         let ran = rows.iter().map(|row| row.skipped.is_none()).collect();
         let record = RoundRecord { first_sample, samples, tiles, ran };
+        let probed_rays = batch.probed_rays;
         let (sums, left) = batch.finish(tiles);
-        Ok(Some(Self { sums, outcome: Outcome { primary, rows, left, stopped }, record }))
+        Ok(Some(Self { sums, outcome: Outcome { primary, rows, left, stopped }, record, ended_s, probed_rays }))
     }
 
     /// Carries out a round once more as it is recorded.
@@ -121,7 +137,8 @@ impl Round {
             rows = scheduler.into_rows();
         }
         let (sums, left) = batch.finish(tiles);
-        Ok(Self { sums, outcome: Outcome { primary, rows, left, stopped }, record: record.clone() })
+        let (outcome, record) = (Outcome { primary, rows, left, stopped }, record.clone());
+        Ok(Self { sums, outcome, record, ended_s: 0.0, probed_rays: 0 })
     }
 
     /// What became of a component.
@@ -157,7 +174,9 @@ impl<'a, 'r> Batch<'a, 'r> {
         let tiles = renderer.tiles();
         let numbers = first_sample..first_sample + samples;
         let parcels = scrambled(&tiles).into_iter().map(|place| renderer.parcel(tiles[place], &numbers)).collect();
-        Self { renderer, tracer, parcels, before: None, cut: None, probed: PerComponent::default() }
+        let (before, cut, spoilt) = (None, None, None);
+        let (first_left, probed) = (PerComponent::default(), PerComponent::default());
+        Self { renderer, tracer, parcels, before, cut, spoilt, first_left, probed, probed_rays: 0 }
     }
 
     /// Traces the primary rays of at most so many parcels, the first ones, while `go` says so; what that took and how many
@@ -181,6 +200,7 @@ impl<'a, 'r> Batch<'a, 'r> {
         });
         let mut sum = WorkReport::default();
         reports.iter().for_each(|report| add_report(&mut sum, report));
+        self.first_left = self.left();
         (sum, next.into_inner().min(most))
     }
 
@@ -208,20 +228,20 @@ impl<'a, 'r> Batch<'a, 'r> {
             .collect();
         let mut sum = WorkReport::default();
         reports.iter().for_each(|report| add_report(&mut sum, report));
+        self.probed_rays += sum.rays;
         let (probed, end) = &mut self.probed[component];
         add_report(probed, &sum);
         *end = share.end;
         sum
     }
 
-    /// Runs a stage within the time, and undoes its task if that ends before it does.
+    /// Runs a stage within the time. If that ends before the stage does, its task leaves nothing behind: it is undone, or, if
+    /// nobody thought that likely enough to pay for a copy, all that the round has brought is given up but its primary rays.
     fn run_timed(&mut self, stage: &Stage, scheduler: &mut TimedScheduler<'_>, whole: Budget<'_>) {
         if scheduler.begins_task() {
             self.before = (scheduler.risk() > RISKY).then(|| self.saved());
         }
-        let guard_s = GUARD * scheduler.predicted().mean_s / self.parcels.len() as f64 * threads();
-        let go = || whole.left_s() > guard_s;
-        let (report, ended) = if self.before.is_some() { self.run(stage, &go) } else { self.run(stage, &|| true) };
+        let (report, ended) = self.run(stage, &|| whole.left_s() > 0.0);
         if ended {
             let (probed, _) = std::mem::take(&mut self.probed[stage.component]);
             let mut spawned = report.spawned;
@@ -230,6 +250,7 @@ impl<'a, 'r> Batch<'a, 'r> {
         } else {
             scheduler.cut_off(&report);
             self.cut = self.before.take();
+            self.spoilt = self.cut.is_none().then_some(self.first_left);
         }
     }
 
@@ -244,11 +265,12 @@ impl<'a, 'r> Batch<'a, 'r> {
                 if parcel.occupancy()[stage.component] == 0 {
                     return WorkReport::default();
                 }
-                if cut.load(Ordering::Relaxed) || !go() {
+                let (report, complete) =
+                    parcel.run_while(tracer, stage, workspace, &|| !cut.load(Ordering::Relaxed) && go());
+                if !complete {
                     cut.store(true, Ordering::Relaxed);
-                    return WorkReport::default();
                 }
-                parcel.run(tracer, stage, workspace)
+                report
             })
             .collect();
         let mut sum = WorkReport::default();
@@ -258,9 +280,13 @@ impl<'a, 'r> Batch<'a, 'r> {
 
     /// What the parcels have brought, and the rays that wait in them.
     fn saved(&self) -> Standing {
+        (self.parcels.par_iter().map(|parcel| self.developed(parcel)).collect(), self.left())
+    }
+
+    fn left(&self) -> PerComponent<u64> {
         let mut left = PerComponent::default();
         self.parcels.iter().for_each(|parcel| add_counts(&mut left, &parcel.left()));
-        (self.parcels.par_iter().map(|parcel| self.developed(parcel)).collect(), left)
+        left
     }
 
     fn developed(&self, parcel: &Parcel) -> Planes {
@@ -276,6 +302,7 @@ impl<'a, 'r> Batch<'a, 'r> {
             Some(before) => before,
             None => self.saved(),
         };
+        let left = self.spoilt.unwrap_or(left);
         let mut sums: Vec<Option<Planes>> = planes.iter().map(|_| None).collect();
         let order = scrambled(&self.renderer.tiles());
         for (place, planes) in order.into_iter().zip(planes).take(done) {
@@ -289,8 +316,4 @@ impl<'a, 'r> Batch<'a, 'r> {
 fn probing(component: Component) -> Stage {
     let key = StageKey::from_words(std::iter::empty());
     Stage { key, component, span: (0, 0), run: 0, threshold: None, held: false, group: None }
-}
-
-fn threads() -> f64 {
-    rayon::current_num_threads() as f64
 }

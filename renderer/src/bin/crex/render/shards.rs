@@ -5,13 +5,12 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use renderer::part::{Head, Joined, PartError, PartFile, Tail};
-use renderer::picture::Compression;
 use renderer::render::{Account, Shard};
 use renderer::schedule::{Clock, MonotonicClock};
 
 use super::{Args, Prepared, format_beside, write_beside, write_stats};
 use crate::console::Failure;
-use crate::output::{self, Output, Pictures};
+use crate::output::{self, Output, Packing, Pictures};
 use crate::stats::{self, Stats};
 use crate::timed;
 
@@ -81,7 +80,7 @@ pub(super) fn run(args: &Args, shard: Shard, prepared: &Prepared, clock: &Monoto
         return Err(Failure::input("--shard writes a part into a file: name it, not standard output"));
     }
     let files: Vec<PathBuf> = std::iter::once(path).chain(&args.stats).cloned().collect();
-    files.iter().try_for_each(|file| output::check_folder(file))?;
+    files.iter().try_for_each(|file| output::check_place(file))?;
     output::clean_up_when_interrupted(files);
     let file = PartFile::create(path, &prepared.head(shard, args.exposure))?;
     let (file, tail, account) = prepared.render_part(shard, file, clock)?;
@@ -126,7 +125,7 @@ pub(crate) fn write_joined(joined: &Joined, outputs: &[Output], parts: Option<(&
         planes: joined.planes(),
         exposure: head.exposure,
         provenance: &head.provenance,
-        compression: Compression::Zip,
+        packing: Packing::CAREFUL,
     };
     pictures.write(outputs, parts, joined.bands().map(|band| band.map_err(Failure::from)))
 }
