@@ -191,3 +191,27 @@ fn compare_refuses_what_it_cannot_compare() {
         assert!(stderr(&output).contains(word), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn a_place_that_cannot_be_written_to_is_found_before_rendering() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    std::fs::write(path("ball.rad"), "void plastic grey 0 0 5 .5 .5 .5 0 0\ngrey sphere ball 0 0 4 0 5 0 1\n").unwrap();
+    std::fs::create_dir(path("taken")).unwrap();
+    let (scene, picture) = (path("ball.rad"), path("a.png"));
+    let words = ["render", &scene, "-vp", "0", "0", "0", "-x", "8", "-y", "8", "--crex", "T", "-o", &picture];
+    for (option, name) in [
+        ("--profile", "taken"),
+        ("--profile", "missing/costs.json"),
+        ("--stats", "taken"),
+        ("--stats", "missing/stats.json"),
+        ("-o", "missing/b.png"),
+    ] {
+        let place = path(name);
+        let output = crex(&[&words[..], &["--time", "0.1", option, &place]].concat());
+        assert_eq!(code(&output), 1, "{option} {name}: {}", stderr(&output));
+        assert!(stderr(&output).contains(&place), "{}", stderr(&output));
+        let names = std::fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(names, 2, "nothing was rendered for {option} {name}, and nothing is left");
+    }
+}

@@ -448,25 +448,6 @@ fn a_time_limit_gives_a_whole_picture_that_replays_to_the_bit() {
 }
 
 #[test]
-fn a_place_that_cannot_be_written_to_is_found_before_rendering() {
-    let folder = Folder::new();
-    fs::create_dir(folder.path("costs.json")).unwrap();
-    let words = ["room.rad", "--crex", "T", "-x", "8", "-y", "8", "-o", "a.png", "--time", "0.1"];
-    for (option, file) in [
-        ("--profile", "costs.json"),
-        ("--profile", "missing/costs.json"),
-        ("--stats", "costs.json"),
-        ("--stats", "missing/stats.json"),
-        ("-o", "missing/b.png"),
-    ] {
-        let output = folder.render(&[&words[..], &[option, file], &VIEW[..]].concat());
-        assert_eq!(output.status.code(), Some(1), "{option} {file}: {}", said(&output));
-        assert!(said(&output).contains(file.split('/').next().unwrap()), "{}", said(&output));
-        assert_eq!(folder.names(), ["costs.json", "room.rad"], "nothing was rendered for {option} {file}");
-    }
-}
-
-#[test]
 fn frames_are_numbered_sharded_and_kept() {
     let folder = Folder::new();
     let view = |x: f64| format!("rvu -vtv -vp {x} -1.9 1.2 -vd 0 1 -.1 -vu 0 0 1 -vh 80 -vv 60\n");

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args as _, FromArgMatches as _};
-use renderer::component::{Component, ComponentSet};
+use renderer::component::Component;
 use renderer::crex::{self, Program, Setting};
 use renderer::film::{Layers, Plane};
 use renderer::importance::map::ImportanceMap;
@@ -204,11 +204,6 @@ impl Prepared {
     /// What the scene was made from.
     pub(crate) fn scene_hash(&self) -> String {
         timed::scene_hash(&self.scene_inputs)
-    }
-
-    /// The components that the scene can spawn.
-    pub(crate) fn components(&self) -> ComponentSet {
-        self.scene.components(self.request.settings.limits.glossy_threshold)
     }
 }
 
