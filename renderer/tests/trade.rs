@@ -70,11 +70,38 @@ fn a_curve_is_written_in_three_forms() {
 }
 
 #[test]
+fn filters_and_time_limits_are_points_of_the_curve() {
+    let folder = tempfile::tempdir().unwrap();
+    let more =
+        ["--json", "--spp", "1,4", "--crex", "MD", "--filter", "D", "--time", ".05,.2", "-o", "c.csv", "-o", "c.svg"];
+    let curve = json(&crex(folder.path(), "trade", &more));
+    let points = curve["points"].as_array().unwrap();
+    let of = |filter: &str, timed: bool| -> Vec<&Value> {
+        let wanted = |p: &&Value| p["crex"] == "MD" && p["filter"] == filter && p["deadline_s"].is_null() != timed;
+        points.iter().filter(wanted).collect()
+    };
+    assert_eq!(of("", false).len(), 2);
+    assert_eq!(of("", true).len(), 2, "each time limit is tried");
+    let smoothed = of("D", false);
+    assert_eq!(smoothed.len(), 1, "one sample tells no noise");
+    let plain = *of("", false).iter().find(|point| point["spp"] == 4).unwrap();
+    let noise = |point: &Value| point["rel_mse"].as_f64().unwrap();
+    assert!(noise(smoothed[0]) < noise(plain), "smoothing takes noise away: {} of {plain}", smoothed[0]);
+    assert!(points.iter().all(|p| p["filter"] == "" || p["crex"].as_str().unwrap().contains('D')));
+    let svg = fs::read_to_string(folder.path().join("c.svg")).unwrap();
+    assert!(svg.contains("diamond: planes smoothed") && svg.contains("cross: within a time limit"));
+    let table = fs::read_to_string(folder.path().join("c.csv")).unwrap();
+    assert!(table.lines().any(|line| line.starts_with("MD,no,,0.05,4,")), "{table}");
+}
+
+#[test]
 fn wrong_words_write_nothing() {
     let folder = tempfile::tempdir().unwrap();
     for (command, more, message) in [
         ("trade", &["-o", "c.png"][..], ".csv, .json or .svg"),
         ("trade", &["--spp", "0"], "--spp"),
+        ("trade", &["--filter", "Q"], "--filter"),
+        ("trade", &["--time", "soon"], "--time"),
         ("trade", &["--crex", "X"], "means nothing in a crex"),
         ("trade", &["--importance", "none.png"], "none.png"),
         ("auto", &["--tolerance", "0"], "--tolerance"),

@@ -22,8 +22,11 @@ use crate::raster::Raster;
 /// The one attribute of our own. The crate keeps several in a hash map, whose order changes from run to run.
 const PROVENANCE: &str = "provenance";
 
-/// Blocks sent to the file thread at a time: enough to keep every core compressing.
+/// Blocks sent to the file thread at a time, at most: enough to keep every core compressing.
 const BLOCKS_AT_ONCE: usize = 16;
+
+/// Bytes of them, about: up to three times as many wait, are compressed, and are filled at a time.
+const BYTES_AT_ONCE: usize = 128 << 20;
 
 /// Writes blocks of rows as they fill. The `exr` crate drives its file from a closure; a thread holds that closure and is fed
 /// through a short queue, so memory stays bounded however slow the disk is.
@@ -36,6 +39,7 @@ pub(super) struct ExrEncoder {
     width: usize,
     height: usize,
     rows_per_block: usize,
+    blocks_at_once: usize,
     rows_done: usize,
     /// Native-endian bytes of the block being filled.
     block: Vec<u8>,
@@ -62,6 +66,7 @@ impl ExrEncoder {
             }
         }
         channels.sort_by(|a, b| a.0.cmp(&b.0));
+        let row_bytes = channels.len() * header.width * size_of::<f32>();
         let sources = channels.iter().map(|(_, source)| *source).collect();
         let exr_header = exr_header(header, channels.into_iter().map(|(name, _)| name));
         let rows_per_block = exr_header.compression.scan_lines_per_block();
@@ -77,6 +82,7 @@ impl ExrEncoder {
             width: header.width,
             height: header.height,
             rows_per_block,
+            blocks_at_once: (BYTES_AT_ONCE / (row_bytes * rows_per_block)).clamp(1, BLOCKS_AT_ONCE),
             rows_done: 0,
             block: Vec::new(),
             full_blocks: Vec::new(),
@@ -98,7 +104,7 @@ impl ExrEncoder {
             if self.rows_done.is_multiple_of(self.rows_per_block) || self.rows_done == self.height {
                 self.full_blocks.push(std::mem::take(&mut self.block));
             }
-            if self.full_blocks.len() == BLOCKS_AT_ONCE {
+            if self.full_blocks.len() == self.blocks_at_once {
                 self.send();
             }
         }

@@ -3,10 +3,11 @@
 use serde::Serialize;
 
 /// How a rendering heeded the importance map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Modulated {
     /// It had none.
+    #[default]
     No,
     /// Members of `{ }` ran where the map reaches their thresholds.
     Thresholds,
@@ -27,12 +28,16 @@ impl Modulated {
 }
 
 /// A rendering: what it cost and how far it lies from the reference.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
     /// What ran.
     pub crex: String,
     /// How it heeded the map.
     pub importance: Modulated,
+    /// Letters of the components whose planes were smoothed; none if it is empty.
+    pub filter: String,
+    /// The bound within which it was rendered, seconds; whatever its crex did not need went into more samples.
+    pub deadline_s: Option<f64>,
     /// Samples of each pixel.
     pub spp: u32,
     /// Seconds from start to end of the rendering; loading and writing are not in it.
@@ -138,13 +143,35 @@ impl Curve {
     /// A table with a head, one line a point.
     #[must_use]
     pub fn csv(&self) -> String {
-        let mut text = "crex,importance,spp,wall_s,cpu_s,rays,loss_jod,flip,rel_mse,front,knee\n".to_owned();
+        let mut text =
+            "crex,importance,filter,deadline_s,spp,wall_s,cpu_s,rays,loss_jod,flip,rel_mse,front,knee\n".to_owned();
         for point in &self.points {
-            let Point { crex, importance, spp, wall_s, cpu_s, rays, loss_jod, flip, rel_mse, front, knee } = point;
+            let Point { crex, filter, spp, wall_s, cpu_s, rays, loss_jod, flip, rel_mse, front, knee, .. } = point;
+            let deadline = point.deadline_s.map(|seconds| seconds.to_string()).unwrap_or_default();
             text.push_str(&format!(
-                "{crex},{},{spp},{wall_s:.4},{cpu_s:.4},{rays},{loss_jod:.5},{flip:.6},{rel_mse:.6},{front},{knee}\n",
-                importance.word()
+                "{crex},{},{filter},{deadline},{spp},{wall_s:.4},{cpu_s:.4},{rays},{loss_jod:.5},{flip:.6},{rel_mse:.6},{front},{knee}\n",
+                point.importance.word()
             ));
+        }
+        text
+    }
+}
+
+impl Point {
+    /// How it was rendered, in words: crex, samples, and what else was asked for.
+    #[must_use]
+    pub fn how(&self) -> String {
+        let mut text = if self.crex.is_empty() { "direct light".to_owned() } else { self.crex.clone() };
+        match self.importance {
+            Modulated::No => {}
+            modulated => text.push_str(&format!(", {}", modulated.word())),
+        }
+        if !self.filter.is_empty() {
+            text.push_str(&format!(", {} smoothed", self.filter));
+        }
+        match self.deadline_s {
+            Some(seconds) => text.push_str(&format!(", within {seconds} s")),
+            None => text.push_str(&format!(", {} spp", self.spp)),
         }
         text
     }
@@ -156,19 +183,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn point(cpu_s: f64, loss_jod: f64) -> Point {
-        Point {
-            crex: "D".to_owned(),
-            importance: Modulated::No,
-            spp: 1,
-            wall_s: cpu_s,
-            cpu_s,
-            rays: 1,
-            loss_jod,
-            flip: 0.0,
-            rel_mse: 0.0,
-            front: false,
-            knee: false,
-        }
+        Point { crex: "D".to_owned(), spp: 1, wall_s: cpu_s, cpu_s, rays: 1, loss_jod, ..Point::default() }
     }
 
     fn front(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
@@ -200,6 +215,16 @@ mod tests {
         let Half { best, half } = curve.half().unwrap();
         assert_eq!((best.cpu_s, half.cpu_s), (8.0, 3.0));
         assert_eq!(Curve::new(vec![point(4.0, 1.0), point(5.0, 0.5)]).half(), None);
+    }
+
+    #[test]
+    fn a_point_says_how_it_was_rendered() {
+        let mut point = Point { spp: 4, ..Point::default() };
+        assert_eq!(point.how(), "direct light, 4 spp");
+        (point.crex, point.importance, point.filter) = ("D".into(), Modulated::Continuous, "DG".into());
+        assert_eq!(point.how(), "D, continuous, DG smoothed, 4 spp");
+        point.deadline_s = Some(0.5);
+        assert_eq!(point.how(), "D, continuous, DG smoothed, within 0.5 s");
     }
 
     proptest! {

@@ -2,24 +2,45 @@
 
 use std::fmt::Write as _;
 
-use super::curve::{Curve, Modulated, Point};
+use super::curve::{Curve, Point};
 
 /// The plot's place in the picture, and the picture's width: left, top, right, bottom, all.
 const PLOT: [f64; 4] = [70.0, 60.0, 640.0, 440.0];
 const WIDTH: f64 = 1060.0;
 
-/// Height of a line of the list.
+/// Height of a line of the list, and how many characters it holds within the picture's width.
 const LINE: f64 = 18.0;
+const CHARACTERS: usize = 48;
+
+/// Numbers of points nearer to each other than this are written as one run.
+const APART: f64 = 16.0;
 
 /// Colours for light and for dark surroundings; data colours are of Okabe and Ito's palette for colour-blind eyes ("Color
 /// Universal Design", 2008), and shapes differ too.
 const STYLE: &str = "\
 svg{color:#222;background:#fff;font:13px system-ui,sans-serif}text{fill:currentColor}\
 .axis{stroke:currentColor;fill:none}.grid{stroke:currentColor;opacity:.15}\
-.no{fill:#0072b2}.thresholds{fill:#d55e00}.continuous{fill:#009e73}.off{opacity:.35}\
+.no{fill:#0072b2}.thresholds{fill:#d55e00}.continuous{fill:#009e73}.filter{fill:#aa3377}.deadline{fill:#7a6a00}.off{opacity:.35}\
 .front{stroke:currentColor;fill:none;stroke-width:1.5}.knee{stroke:#cc79a7;fill:none;stroke-width:3}\
 @media(prefers-color-scheme:dark){svg{color:#ddd;background:#16181c}.no{fill:#56b4e9}.thresholds{fill:#e69f00}\
-.continuous{fill:#4fd1a5}}";
+.continuous{fill:#4fd1a5}.filter{fill:#cc79a7}.deadline{fill:#f0e442}}";
+
+/// What a mark stands for: its class, its words.
+const KINDS: [(&str, &str); 5] = [
+    ("no", "circle: as the crex says, everywhere"),
+    ("thresholds", "square: importance map by thresholds"),
+    ("continuous", "triangle: importance map as numbers of samples"),
+    ("filter", "diamond: planes smoothed"),
+    ("deadline", "cross: within a time limit"),
+];
+
+fn kind(point: &Point) -> &'static str {
+    match point {
+        Point { deadline_s: Some(_), .. } => "deadline",
+        Point { filter, .. } if !filter.is_empty() => "filter",
+        Point { importance, .. } => importance.word(),
+    }
+}
 
 /// Places of numbers in the plot.
 struct Scale {
@@ -52,7 +73,8 @@ pub fn svg(curve: &Curve, title: &str) -> String {
     let shown = |point: &&Point| point.cpu_s > 0.0 && point.cpu_s.is_finite() && point.loss_jod.is_finite();
     let points: Vec<&Point> = curve.points().iter().filter(shown).collect();
     let front: Vec<&Point> = curve.front().filter(shown).collect();
-    let height = (PLOT[3] + 60.0).max(PLOT[1] + LINE * (front.len() as f64 + 6.0));
+    let entries: Vec<(bool, String)> = legend(&points, &front);
+    let height = (PLOT[3] + 60.0).max(PLOT[1] + LINE * (entries.len() as f64 + 1.0));
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
          role=\"img\"><title>{0}</title><style>{STYLE}</style><rect width=\"100%\" height=\"100%\" fill=\"none\"/>\
@@ -70,7 +92,12 @@ pub fn svg(curve: &Curve, title: &str) -> String {
         front.iter().map(|p| format!("{:.1},{:.1}", scale.x(p.cpu_s), scale.y(p.loss_jod))).collect();
     put(&mut text, format_args!("<polyline class=\"front\" points=\"{}\"/>", path.join(" ")));
     points.iter().for_each(|point| mark(&mut text, &scale, point));
-    list(&mut text, &scale, &front);
+    numbers(&mut text, &scale, &front);
+    for (row, (bold, words)) in entries.iter().enumerate() {
+        let (x, y) = (PLOT[2] + 30.0, PLOT[1] + LINE * row as f64);
+        let weight = if *bold { " font-weight=\"bold\"" } else { "" };
+        put(&mut text, format_args!("<text x=\"{x}\" y=\"{y:.1}\"{weight}>{}</text>", escaped(words)));
+    }
     text.push_str("</svg>\n");
     text
 }
@@ -124,53 +151,69 @@ fn nice_step(least: f64) -> f64 {
 
 fn mark(text: &mut String, scale: &Scale, point: &Point) {
     let (x, y) = (scale.x(point.cpu_s), scale.y(point.loss_jod));
-    let class = format!("{}{}", point.importance.word(), if point.front { "" } else { " off" });
-    let tip = format!("<title>{}</title>", escaped(&words(point)));
-    match point.importance {
-        Modulated::No => {
-            put(text, format_args!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\">{tip}</circle>"))
+    let kind = kind(point);
+    let class = format!("{kind}{}", if point.front { "" } else { " off" });
+    let shape = match kind {
+        "no" => format!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\">"),
+        "thresholds" => {
+            format!("<rect class=\"{class}\" x=\"{:.1}\" y=\"{:.1}\" width=\"7\" height=\"7\">", x - 3.5, y - 3.5)
         }
-        Modulated::Thresholds => put(
-            text,
-            format_args!(
-                "<rect class=\"{class}\" x=\"{:.1}\" y=\"{:.1}\" width=\"7\" height=\"7\">{tip}</rect>",
-                x - 3.5,
-                y - 3.5
-            ),
-        ),
-        Modulated::Continuous => {
-            put(text, format_args!("<path class=\"{class}\" d=\"M{x:.1} {:.1}l5 9h-10z\">{tip}</path>", y - 5.5));
+        "continuous" => format!("<path class=\"{class}\" d=\"M{x:.1} {:.1}l5 9h-10z\">", y - 5.5),
+        "filter" => format!("<path class=\"{class}\" d=\"M{x:.1} {:.1}l5 5.5l-5 5.5l-5 -5.5z\">", y - 5.5),
+        _ => {
+            format!("<path class=\"{class}\" d=\"M{:.1} {:.1}h3v-3.5h3v3.5h3v3h-3v3.5h-3v-3.5h-3z\">", x - 4.5, y - 1.5)
         }
-    }
+    };
+    let name = shape[1..].split(' ').next().unwrap_or("path");
+    let tip = format!("{:.3} s, {:.2} JOD: {}", point.cpu_s, point.loss_jod, point.how());
+    put(text, format_args!("{shape}<title>{}</title></{name}>", escaped(&tip)));
     if point.knee {
         put(text, format_args!("<circle class=\"knee\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\"/>"));
     }
 }
 
-fn list(text: &mut String, scale: &Scale, front: &[&Point]) {
-    let left = PLOT[2] + 30.0;
-    let mut y = PLOT[1];
-    let mut line = |text: &mut String, words: &str, bold: bool| {
-        let weight = if bold { " font-weight=\"bold\"" } else { "" };
-        put(text, format_args!("<text x=\"{left}\" y=\"{y:.1}\"{weight}>{}</text>", escaped(words)));
-        y += LINE;
-    };
-    line(text, "The front: nothing quicker is as good", true);
-    for (number, point) in (1..).zip(front) {
-        let knee = if point.knee { " (knee)" } else { "" };
-        line(text, &format!("{number}  {}{knee}", words(point)), point.knee);
-        let (x, y) = (scale.x(point.cpu_s), scale.y(point.loss_jod));
-        put(text, format_args!("<text x=\"{:.1}\" y=\"{:.1}\" font-size=\"11\">{number}</text>", x + 7.0, y - 6.0));
+/// The numbers of the front's points beside them; those of points that lie together as a run, such as 5-7.
+fn numbers(text: &mut String, scale: &Scale, front: &[&Point]) {
+    let place = |point: &Point| (scale.x(point.cpu_s), scale.y(point.loss_jod));
+    let mut rest = front;
+    let mut first = 1;
+    while let Some(&point) = rest.first() {
+        let (x, y) = place(point);
+        let near = |other: &&&Point| {
+            let (other_x, other_y) = place(other);
+            (other_x - x).hypot(other_y - y) < APART
+        };
+        let together = rest.iter().take_while(near).count();
+        let (x, y) = (x + 7.0, y - 6.0);
+        let last = first + together - 1;
+        let run = if together == 1 { first.to_string() } else { format!("{first}-{last}") };
+        put(text, format_args!("<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"11\">{run}</text>"));
+        (rest, first) = (&rest[together..], last + 1);
     }
-    line(text, "", false);
-    line(text, "circles: no importance map; squares: thresholds;", false);
-    line(text, "triangles: continuous importance; pale: not on the front", false);
 }
 
-fn words(point: &Point) -> String {
-    let crex = if point.crex.is_empty() { "direct light" } else { &point.crex };
-    let map = if point.importance == Modulated::No { String::new() } else { format!(", {}", point.importance.word()) };
-    format!("{crex}{map}, {} spp: {:.3} s, {:.2} JOD", point.spp, point.cpu_s, point.loss_jod)
+/// The lines of the list, each with whether it is bold: the front, and what the marks are.
+fn legend(points: &[&Point], front: &[&Point]) -> Vec<(bool, String)> {
+    let mut lines = vec![(true, "The front: nothing quicker is as good".to_owned())];
+    for (number, point) in (1..).zip(front) {
+        let knee = if point.knee { " (knee)" } else { "" };
+        let words = format!("{number}{knee}  {:.3} s, {:.2} JOD: {}", point.cpu_s, point.loss_jod, point.how());
+        let letters: Vec<char> = words.chars().collect();
+        let (head, tail) = letters.split_at(CHARACTERS.min(letters.len()));
+        lines.push((point.knee, head.iter().collect()));
+        // What a line does not hold goes on below it, indented.
+        lines.extend(
+            tail.chunks(CHARACTERS - 4)
+                .map(|more| (point.knee, format!("\u{2003}{}", more.iter().collect::<String>()))),
+        );
+    }
+    lines.push((false, String::new()));
+    let there = KINDS.iter().filter(|(name, _)| points.iter().any(|point| kind(point) == *name));
+    lines.extend(there.map(|(_, words)| (false, (*words).to_owned())));
+    if points.len() > front.len() {
+        lines.push((false, "pale: not on the front".to_owned()));
+    }
+    lines
 }
 
 fn escaped(text: &str) -> String {
@@ -196,21 +239,34 @@ mod tests {
     fn crexes_do_not_break_the_picture() {
         let point = |crex: &str, cpu_s, loss_jod| Point {
             crex: crex.to_owned(),
-            importance: Modulated::No,
             spp: 1,
             wall_s: cpu_s,
             cpu_s,
             rays: 1,
             loss_jod,
-            flip: 0.0,
-            rel_mse: 0.0,
-            front: false,
-            knee: false,
+            ..Point::default()
         };
         let curve = Curve::new(vec![point("<MRSGD>T*", 1.0, 1.0), point("", 0.5, 2.0), point("D", 0.0, f64::NAN)]);
         let text = svg(&curve, "a < b");
         assert!(text.contains("&lt;MRSGD&gt;T*") && text.contains("a &lt; b") && text.contains("direct light, 1 spp"));
         assert!(!text.contains("NaN") && !text.contains("<MRSGD>"));
         assert!(svg(&Curve::new(vec![]), "nothing").ends_with("</svg>\n"));
+    }
+
+    #[test]
+    fn long_words_go_on_below_and_numbers_do_not_lie_on_each_other() {
+        let point = |crex: &str, cpu_s, loss_jod| Point { crex: crex.to_owned(), cpu_s, loss_jod, ..Point::default() };
+        let long = "{T}*{M}{T}*{G}{T}*".repeat(8);
+        let curve = Curve::new(vec![point("D", 1.0, 3.0), point("D2", 1.001, 2.999), point(&long, 4.0, 0.5)]);
+        let text = svg(&curve, "a scene");
+        let lines = |text: &str| -> Vec<String> {
+            let marked = text.split("<text x=\"670\"").skip(1);
+            marked.map(|rest| rest.split_once('>').unwrap().1.split_once('<').unwrap().0.to_owned()).collect()
+        };
+        let lines = lines(&text);
+        assert!(lines.iter().all(|line| line.chars().count() <= CHARACTERS), "{lines:?}");
+        let whole: String = lines.iter().map(|line| line.trim_start_matches('\u{2003}')).collect();
+        assert!(whole.contains(&long));
+        assert!(text.contains(">1-2</text>") && text.contains(">3</text>"));
     }
 }

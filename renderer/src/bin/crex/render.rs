@@ -113,7 +113,7 @@ enum LayerChoice {
 }
 
 /// A component by its letter.
-fn component(text: &str) -> Result<Component, String> {
+pub(crate) fn component(text: &str) -> Result<Component, String> {
     let mut letters = text.chars();
     match (letters.next().and_then(Component::from_letter), letters.next()) {
         (Some(component), None) => Ok(component),

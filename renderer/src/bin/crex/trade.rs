@@ -3,13 +3,14 @@
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
+use renderer::component::{Component, ComponentSet};
 use renderer::crex::Program;
 use renderer::geometry::Aggregate;
 use renderer::picture::display::Display;
 use renderer::picture::{AtomicFile, Picture, compare};
 use renderer::propose::{self, Profile, Question, Step};
-use renderer::render::{RenderError, Renderer, Rendering, Settings};
-use renderer::schedule::{Clock, MonotonicClock};
+use renderer::render::{Renderer, Rendering, Settings};
+use renderer::schedule::{Budget, Clock, MonotonicClock, ProfileCache};
 use renderer::trade::{Curve, Half, Modulated, Point, svg};
 use serde::Serialize;
 
@@ -42,6 +43,12 @@ pub(crate) struct Args {
     /// Also try the proposed crexes with their components in { }, by thresholds and with continuous importance
     #[arg(long, value_name = "MAP")]
     importance: Option<PathBuf>,
+    /// Also try the crexes with the planes of these components smoothed, where they run and there are 2 samples or more
+    #[arg(long, value_name = "LETTERS", value_parser = render::component, value_delimiter = ',')]
+    filter: Vec<Component>,
+    /// Also try the crexes within so many seconds of rendering, with the most samples of --spp
+    #[arg(long, value_name = "S,S,..", value_parser = crate::timed::seconds, value_delimiter = ',')]
+    time: Vec<f64>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -53,11 +60,20 @@ struct Candidate {
     crex: String,
     importance: Modulated,
     thresholds: Vec<f32>,
+    filter: ComponentSet,
+}
+
+/// How a candidate is tried.
+#[derive(Clone, Copy)]
+struct Trial<'a> {
+    candidate: &'a Candidate,
+    spp: u32,
+    deadline_s: Option<f64>,
 }
 
 impl Candidate {
     fn plain(crex: String) -> Self {
-        Self { crex, importance: Modulated::No, thresholds: Vec::new() }
+        Self { crex, importance: Modulated::No, thresholds: Vec::new(), filter: ComponentSet::EMPTY }
     }
 }
 
@@ -122,7 +138,8 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         spp: args.reference_spp.unwrap_or_else(|| most.saturating_mul(4)),
         seed: seed.wrapping_add(1),
     };
-    let curve = Curve::new(bench.measure(&candidates, &args.spp, &reference)?);
+    let trials = trials(args, &candidates, most);
+    let curve = Curve::new(bench.measure(&trials, &reference)?);
     let names = args.scene.scenes.iter().map(|path| path.display().to_string());
     let Settings { width, height, threads, .. } = settings;
     let report = Report {
@@ -177,18 +194,20 @@ fn candidates(
                 crex: modulated.crex,
                 importance: Modulated::Thresholds,
                 thresholds: modulated.thresholds,
+                filter: ComponentSet::EMPTY,
             });
             made.push(Candidate {
                 crex: step.levels.spelled(all),
                 importance: Modulated::Continuous,
                 thresholds: vec![],
+                filter: ComponentSet::EMPTY,
             });
         }
     }
     for crex in &args.crexes {
         let importance =
             if args.importance.is_some() && crex.contains('{') { Modulated::Thresholds } else { Modulated::No };
-        made.push(Candidate { crex: crex.clone(), importance, thresholds: Vec::new() });
+        made.push(Candidate { importance, ..Candidate::plain(crex.clone()) });
     }
     let mut known: Vec<(String, Modulated)> = Vec::new();
     made.retain(|candidate| {
@@ -197,36 +216,55 @@ fn candidates(
         known.push(name);
         new
     });
+    for index in 0..made.len() {
+        let run = Program::new(&plan::parse(&made[index].crex)?).components();
+        let filter: ComponentSet = args.filter.iter().copied().filter(|&component| run.contains(component)).collect();
+        // Continuous importance spreads samples unevenly, and smoothing wants two halves of them.
+        if !filter.is_empty() && made[index].importance != Modulated::Continuous {
+            made.push(Candidate { filter, ..made[index].clone() });
+        }
+    }
     Ok(made)
 }
 
+/// Every candidate at all numbers of samples, and within all time limits.
+fn trials<'a>(args: &Args, candidates: &'a [Candidate], most: u32) -> Vec<Trial<'a>> {
+    let mut trials = Vec::new();
+    for candidate in candidates {
+        let smoothed = !candidate.filter.is_empty();
+        let spps = args.spp.iter().filter(|&&spp| spp > 1 || !smoothed);
+        trials.extend(spps.map(|&spp| Trial { candidate, spp, deadline_s: None }));
+        let times = args.time.iter().filter(|_| !smoothed);
+        trials.extend(times.map(|&time| Trial { candidate, spp: most, deadline_s: Some(time) }));
+    }
+    trials
+}
+
 impl Bench<'_> {
-    fn measure(&self, candidates: &[Candidate], spps: &[u32], reference: &Reference) -> Result<Vec<Point>, Failure> {
+    fn measure(&self, trials: &[Trial<'_>], reference: &Reference) -> Result<Vec<Point>, Failure> {
         let progress = Progress::new(self.clock);
         // The reference costs about as much as the full solution at all samples together, and that is a step of many.
-        let all =
-            f64::from(reference.spp) + spps.iter().map(|&spp| f64::from(spp)).sum::<f64>() * candidates.len() as f64;
+        let parts = trials.iter().map(|trial| f64::from(trial.spp));
+        let all = f64::from(reference.spp) + parts.sum::<f64>();
         let done = Cell::new(0.0);
-        let show = |begun: f64, part: f64, fraction: f64| progress.set((begun + part * fraction) / all);
+        let begin = |part: f64| {
+            let begun = done.replace(done.get() + part);
+            let progress = &progress;
+            move |fraction: f64| progress.set((begun + part * fraction) / all)
+        };
         let settings = |spp: u32, seed: u64| Settings { samples: spp, seed, ..self.prepared.request.settings.clone() };
-        let begin = |part: f64| done.replace(done.get() + part);
-        let begun = begin(f64::from(reference.spp));
         let full = Candidate::plain(reference.crex.clone());
-        let part = f64::from(reference.spp);
-        let truth =
-            self.render(&full, settings(reference.spp, reference.seed), &|fraction| show(begun, part, fraction))?;
-        let truth = picture(&truth);
+        let trial = Trial { candidate: &full, spp: reference.spp, deadline_s: None };
+        let show = begin(f64::from(reference.spp));
+        let truth = picture(&self.render(trial, settings(reference.spp, reference.seed), &show)?);
         let mut points = Vec::new();
-        for candidate in candidates {
-            for &spp in spps {
-                let part = f64::from(spp);
-                let begun = begin(part);
-                let seed = self.prepared.request.settings.seed;
-                let (wall, cpu) = (self.clock.now_s(), cpu_s());
-                let rendering = self.render(candidate, settings(spp, seed), &|fraction| show(begun, part, fraction))?;
-                let (wall_s, cpu_s) = (self.clock.now_s() - wall, cpu_s() - cpu);
-                points.push(self.judge(candidate, spp, &rendering, &truth, wall_s, cpu_s)?);
-            }
+        for &trial in trials {
+            let show = begin(f64::from(trial.spp));
+            let seed = self.prepared.request.settings.seed;
+            let (wall, cpu) = (self.clock.now_s(), cpu_s());
+            let rendering = self.render(trial, settings(trial.spp, seed), &show)?;
+            let (wall_s, cpu_s) = (self.clock.now_s() - wall, cpu_s() - cpu);
+            points.push(self.judge(trial, &rendering, &truth, wall_s, cpu_s)?);
         }
         progress.done();
         Ok(points)
@@ -234,35 +272,38 @@ impl Bench<'_> {
 
     fn render(
         &self,
-        candidate: &Candidate,
+        trial: Trial<'_>,
         settings: Settings,
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Rendering, Failure> {
-        let refused = |error: RenderError| match error {
-            RenderError::Threads { .. } => Failure::Cannot(error.to_string()),
-            _ => Failure::input(error),
-        };
+        let candidate = trial.candidate;
         let program = Program::new(&plan::parse(&candidate.crex)?);
         let request = &self.prepared.request;
         let (scene, view) = (self.prepared.scene(), &request.view);
-        let mut renderer = Renderer::new(scene, &self.aggregate, view, &program, self.clock, settings)
-            .map_err(refused)?
-            .with_progress(progress);
+        let mut renderer = Renderer::new(scene, &self.aggregate, view, &program, self.clock, settings)?;
+        renderer = renderer.with_progress(progress);
         if let Some(map) = request.importance.as_ref().filter(|_| candidate.importance != Modulated::No) {
-            renderer = renderer.with_importance(map.values()).map_err(refused)?;
+            renderer = renderer.with_importance(map.values())?;
         }
         if candidate.importance == Modulated::Continuous {
             renderer = renderer.with_continuous_importance();
         } else if !candidate.thresholds.is_empty() {
-            renderer = renderer.with_thresholds(&candidate.thresholds).map_err(refused)?;
+            renderer = renderer.with_thresholds(&candidate.thresholds)?;
         }
-        renderer.render().map_err(refused)
+        Ok(match trial.deadline_s {
+            // Each run learns what rays cost by itself, as a user's first one would.
+            Some(seconds) => {
+                let budget = Budget::new(self.clock, self.clock.now_s() + seconds, 0.0);
+                renderer.render_within(budget, &mut ProfileCache::new("", ""))?.rendering
+            }
+            None if candidate.filter.is_empty() => renderer.render()?,
+            None => renderer.render_smoothed(candidate.filter)?.0,
+        })
     }
 
     fn judge(
         &self,
-        candidate: &Candidate,
-        spp: u32,
+        trial: Trial<'_>,
         rendering: &Rendering,
         truth: &Picture,
         wall_s: f64,
@@ -274,9 +315,11 @@ impl Bench<'_> {
         let flip = compare::mean(&compare::flip(truth, &made, &self.display, self.exposure).map_err(Failure::input)?);
         let rays = rendering.primary.rays + rendering.stages.iter().map(|row| row.report.rays).sum::<u64>();
         Ok(Point {
-            crex: candidate.crex.clone(),
-            importance: candidate.importance,
-            spp,
+            crex: trial.candidate.crex.clone(),
+            importance: trial.candidate.importance,
+            filter: trial.candidate.filter.iter().map(Component::letter).collect(),
+            deadline_s: trial.deadline_s,
+            spp: trial.spp,
             wall_s,
             cpu_s,
             rays,
@@ -316,20 +359,19 @@ fn title(report: &Report<'_>) -> String {
 
 /// The front for people, the knee, and what half the time costs.
 fn words(curve: &Curve, report: &Report<'_>) -> String {
-    let mut text =
-        format!("{}\n\n   cpu s   wall s  loss JOD    FLIP  rel MSE  spp  importance  crex\n", title(report));
+    let mut text = format!("{}\n\n   cpu s   wall s  loss JOD    FLIP  rel MSE  how\n", title(report));
     for point in curve.front() {
-        let Point { crex, importance, spp, wall_s, cpu_s, loss_jod, flip, rel_mse, .. } = point;
+        let Point { wall_s, cpu_s, loss_jod, flip, rel_mse, .. } = point;
         let mark = if point.knee { "  <- knee" } else { "" };
         text.push_str(&format!(
-            "{cpu_s:8.3} {wall_s:8.3} {loss_jod:9.3} {flip:7.4} {rel_mse:8.4} {spp:4}  {:<10}  {crex}{mark}\n",
-            importance.word()
+            "{cpu_s:8.3} {wall_s:8.3} {loss_jod:9.3} {flip:7.4} {rel_mse:8.4}  {}{mark}\n",
+            point.how()
         ));
     }
     match curve.half() {
         Some(Half { best, half }) => text.push_str(&format!(
             "\nAt half the time of the best ({:.2} of {:.2} s) you lose {:.2} JOD more ({:.2} against {:.2}; FLIP {:.3} against \
-             {:.3}), with {:?} and {} spp.\n",
+             {:.3}), with {}.\n",
             half.cpu_s,
             best.cpu_s,
             half.loss_jod - best.loss_jod,
@@ -337,8 +379,7 @@ fn words(curve: &Curve, report: &Report<'_>) -> String {
             best.loss_jod,
             half.flip,
             best.flip,
-            half.crex,
-            half.spp
+            half.how()
         )),
         None => text.push_str("\nNothing that was tried takes half the time of the best.\n"),
     }
