@@ -115,6 +115,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--crex", default="target/release/crex")
     parser.add_argument("--runs", type=int, default=500)
+    parser.add_argument("--first", type=int, default=0, help="number of the first run: two programs can share the work")
     parser.add_argument("--bounds", type=float, nargs=2, default=(0.3, 20.0))
     parser.add_argument("--scenes", nargs="+", default=list(SCENES), choices=list(SCENES))
     parser.add_argument("--size", type=int, default=400)
@@ -135,7 +136,7 @@ def main():
                 writer = csv.DictWriter(file, columns)
                 if not rows:
                     writer.writeheader()
-                for run in range(len(rows), args.runs):
+                for run in range(args.first + len(rows), args.first + args.runs):
                     dice = random.Random(f"2005 {run}")
                     scene = args.scenes[run % len(args.scenes)]
                     bound = math.exp(dice.uniform(*map(math.log, args.bounds)))
