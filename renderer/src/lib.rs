@@ -1,5 +1,6 @@
 //! Radiance scenes rendered by light-transport component, in the order that a component regular expression says.
 
+mod atomic;
 pub mod cal;
 pub mod color;
 pub mod component;

@@ -7,7 +7,6 @@
 //!
 //! This is the only module that names the crates `exr`, `png`, `flip_rs` and `colorvideovdp`.
 
-mod atomic;
 pub mod compare;
 pub mod display;
 mod error;
@@ -28,7 +27,7 @@ use glam::Vec3;
 use crate::color::srgb_encode;
 use crate::raster::Raster;
 
-pub use atomic::AtomicFile;
+pub use crate::atomic::AtomicFile;
 pub use error::{Error, Kind};
 pub use provenance::{Input, Provenance};
 pub use write::{Band, Compression, Format, HdrStream, Header, PictureFile, write};

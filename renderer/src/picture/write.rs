@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::atomic::AtomicFile;
+use super::AtomicFile;
 use super::exr::ExrEncoder;
 use super::hdr::HdrEncoder;
 use super::png::PngEncoder;

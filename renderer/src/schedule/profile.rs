@@ -19,8 +19,9 @@ pub const PRIOR_SPREAD: f64 = 0.25;
 /// How many observations [`PRIOR_SPREAD`] counts as.
 pub const PRIOR_OBSERVATIONS: f64 = 2.0;
 
-/// Deviations that are kept for a chore beyond its mean.
-pub const KEPT_DEVIATIONS: f64 = 1.5;
+/// Deviations that are kept for a chore beyond its mean: of three chores that err on their own, as many as follow a picture, 1.7
+/// of their sum.
+pub const KEPT_DEVIATIONS: f64 = 1.0;
 
 /// What a chore may take, as a multiple of what is kept for it, and be believed.
 pub const MOST_EXCESS: f64 = 2.0;

@@ -23,7 +23,7 @@
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
@@ -37,6 +37,7 @@ use super::calibration::REMEMBERED;
 use super::cost::{Cost, RayKind};
 use super::offspring::Offspring;
 use super::profile::ProfileCache;
+use crate::atomic::AtomicFile;
 
 const FORMAT: &str = "crex profile 2";
 
@@ -141,11 +142,8 @@ impl ProfileCache {
         let lock = lock(&beside(path, ".lock"))?;
         let mut all = Self::load(path, self.scene(), self.machine())?;
         all.add_fresh(self);
-        let temporary = beside(path, ".part");
-        let io_error = |source| ProfileError::Io { path: temporary.clone(), source };
-        let mut file = File::create(&temporary).map_err(io_error)?;
-        file.write_all(to_json(&all).as_bytes()).map_err(io_error)?;
-        fs::rename(&temporary, path).map_err(|source| ProfileError::Io { path: path.to_owned(), source })?;
+        AtomicFile::write_all_unsynced(path, to_json(&all).as_bytes())
+            .map_err(|source| ProfileError::Io { path: path.to_owned(), source })?;
         drop(lock);
         all.stored();
         *self = all;
