@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use renderer::component::{Component, ComponentSet};
 use renderer::picture::display::Display;
-use renderer::propose::{Level, Modulated, Profile, Question, modulate, propose_from};
+use renderer::propose::{Level, Modulated, Profile, Question, modulate, propose_from, propose_while};
 use renderer::rad::{self, MemoryFiles, Source, ViewSpec};
 use renderer::render::Settings;
 use renderer::scene::{Scene, View};
@@ -24,6 +24,10 @@ impl Clock for Even {
 
 /// Proposes for a room from its text, seen along +y from the middle of a wall.
 fn with_profile<T>(text: &str, work: impl FnOnce(&mut Profile<'_>) -> T) -> T {
+    with_question(text, |question| work(&mut Profile::new(question).unwrap()))
+}
+
+fn with_question<T>(text: &str, work: impl FnOnce(Question<'_>) -> T) -> T {
     let document = rad::read(&[Source::new("test.rad", text)], &MemoryFiles::new(), &rad::Options::default()).unwrap();
     let scene = Scene::from_rad(&document).unwrap();
     let aggregate = scene.aggregate();
@@ -49,7 +53,7 @@ fn with_profile<T>(text: &str, work: impl FnOnce(&mut Profile<'_>) -> T) -> T {
         exposure: None,
         clock: &clock,
     };
-    work(&mut Profile::new(question).unwrap())
+    work(question)
 }
 
 /// Walls, floor and ceiling of a material `wall`, a lamp, and what else there is.
@@ -82,9 +86,18 @@ fn steps_lead_from_direct_light_to_the_full_solution() {
         // The choices keep what they promise.
         let chosen = proposal.within_loss(0.3);
         assert!(chosen.forecast.loss_jod <= 0.3);
-        let half = 0.5 * last.forecast.seconds;
-        assert!(proposal.within_seconds(half).forecast.seconds <= half);
         assert_eq!(proposal.within_seconds(0.0), first);
+        // Never above the bound, and never less gain with more time.
+        let mut before = first.forecast.loss_jod;
+        for part in 0..=64 {
+            let bound = first.forecast.seconds
+                * (1.01 + f64::from(part) / 16.0 * last.forecast.seconds / first.forecast.seconds);
+            let chosen = proposal.within_seconds(bound).forecast;
+            assert!(chosen.seconds <= bound && chosen.loss_jod <= before, "{part}: {chosen:?}");
+            before = chosen.loss_jod;
+        }
+        assert_eq!(before, 0.0, "with time for all, the full solution");
+        assert!(proposal.seen.len() > proposal.steps.len(), "candidates that were no step count too");
         assert_eq!(proposal.within_loss(0.0).forecast.loss_jod, 0.0);
     });
 }
@@ -129,5 +142,35 @@ fn thresholds_fit_their_crex_and_rise_as_visibility_falls() {
         // With a tolerance beyond the scale nothing has to run below full importance.
         assert!(!lax.thresholds.is_empty() && lax.thresholds.iter().all(|&threshold| threshold == 1.0));
         assert!(strict.thresholds.iter().all(|&threshold| threshold > 0.0 && threshold < 1.0), "{strict:?}");
+    });
+}
+
+/// The time for choosing ends after any number of looks: what was looked at until then is chosen from, and the full solution
+/// always.
+#[test]
+fn a_choice_that_is_cut_short_still_knows_the_full_solution() {
+    with_profile(&room(".4 .4 .4", MIRROR), |profile| {
+        let whole = propose_from(profile).unwrap();
+        for most in 0..whole.seen.len() as u64 {
+            let looks = AtomicU64::new(0);
+            let short = propose_while(profile, &|| looks.fetch_add(1, Ordering::Relaxed) < most).unwrap();
+            assert_eq!(short.within_seconds(f64::INFINITY).forecast.loss_jod, 0.0);
+            assert_eq!(short.within_seconds(0.0).crex, "");
+            assert!(short.seen.len() as u64 <= most + 2);
+            for step in &short.seen {
+                assert!(whole.seen.iter().any(|known| known.crex == step.crex && known.forecast == step.forecast));
+            }
+        }
+    });
+}
+
+/// Small pictures as small as the time allows, down to none.
+#[test]
+fn little_time_for_choosing_means_small_pictures_or_none() {
+    let text = room(".5 .5 .5", "");
+    with_question(&text, |question| {
+        assert!(Profile::within(question, 0.0).unwrap().is_none());
+        let mut profile = Profile::within(question, 1e6).unwrap().expect("there is time");
+        assert_eq!(propose_from(&mut profile).unwrap().within_seconds(f64::INFINITY).forecast.loss_jod, 0.0);
     });
 }

@@ -44,8 +44,10 @@ pub struct Step {
 /// time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal {
-    /// The crexes; the last one is the full solution.
+    /// The crexes; the last one is the full solution, unless the time for choosing ended before.
     pub steps: Vec<Step>,
+    /// All crexes that were looked at, those included that were no step, and the full solution in any case.
+    pub seen: Vec<Step>,
     /// What radiance is multiplied by before it is judged.
     pub exposure: f64,
 }
@@ -65,15 +67,28 @@ pub fn propose(question: Question<'_>) -> Result<Proposal, ProposeError> {
 /// # Errors
 /// As [`propose`].
 pub fn propose_from(profile: &mut Profile<'_>) -> Result<Proposal, ProposeError> {
+    propose_while(profile, &|| true)
+}
+
+/// The same for as long as `go` says so, which is asked before each crex that is looked at.
+///
+/// # Errors
+/// As [`propose`].
+pub fn propose_while(profile: &mut Profile<'_>, go: &dyn Fn() -> bool) -> Result<Proposal, ProposeError> {
     let mut now = step(profile, Levels::default())?;
     let mut steps = vec![now.clone()];
+    let mut seen = vec![now.clone(), step(profile, Levels::full(profile.components()))?];
     loop {
         // Every component is looked at each time: losses saturate, so that one that is worth little beside a larger lack is
         // worth much once that is gone.
         let mut best: Option<(f64, Step)> = None;
         for component in profile.components().iter() {
             let Some(level) = now.levels.level(component).next(component) else { continue };
+            if !go() {
+                return Ok(Proposal { steps, seen, exposure: profile.exposure() });
+            }
             let candidate = step(profile, now.levels.with(component, level))?;
+            seen.push(candidate.clone());
             let worth = worth_of(&now, &candidate);
             if best.as_ref().is_none_or(|(found, _)| worth > *found) {
                 best = Some((worth, candidate));
@@ -90,7 +105,7 @@ pub fn propose_from(profile: &mut Profile<'_>) -> Result<Proposal, ProposeError>
     if let Some(last) = steps.last_mut().filter(|last| !last.levels.components().is_empty()) {
         *last = now;
     }
-    Ok(Proposal { steps, exposure: profile.exposure() })
+    Ok(Proposal { steps, seen, exposure: profile.exposure() })
 }
 
 /// Predicted gain for each second; 0 if there is nothing to run.
@@ -114,12 +129,16 @@ impl Proposal {
         cheapest.unwrap_or_else(|| self.full())
     }
 
-    /// The step of least predicted loss of those predicted to take at most `seconds` of tracing, summed over threads;
-    /// direct light alone if none does.
+    /// The crex of least predicted loss, of all that were looked at and are predicted to take at most `seconds` of tracing,
+    /// summed over threads; the quicker one of equals, and direct light alone if none is so quick. More seconds never mean
+    /// more loss.
     #[must_use]
     pub fn within_seconds(&self, seconds: f64) -> &Step {
-        let quick = self.steps.iter().filter(|step| step.forecast.seconds <= seconds);
-        let best = quick.min_by(|a, b| a.forecast.loss_jod.total_cmp(&b.forecast.loss_jod));
+        let quick = self.seen.iter().filter(|step| step.forecast.seconds <= seconds);
+        let best = quick.min_by(|a, b| {
+            let by_loss = a.forecast.loss_jod.total_cmp(&b.forecast.loss_jod);
+            by_loss.then(a.forecast.seconds.total_cmp(&b.forecast.seconds))
+        });
         best.unwrap_or(&self.steps[0])
     }
 

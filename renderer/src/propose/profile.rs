@@ -45,6 +45,14 @@ const LONGEST: f64 = 48.0;
 /// Samples of each of their pixels.
 const SAMPLES: u32 = 4;
 
+/// Under a bound: the longest side of the picture that tells what pictures cost, and the least of those that tell what they show;
+/// pixels, with one sample each.
+const PILOT: f64 = 4.0;
+const SHORTEST: f64 = 12.0;
+
+/// How many full solutions the time for choosing has room for, so that there is time for others.
+const FULL_ONES: f64 = 4.0;
+
 /// What is known of a crex before it is rendered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Forecast {
@@ -78,15 +86,34 @@ impl<'a> Profile<'a> {
     /// # Errors
     /// If the settings are refused.
     pub fn new(question: Question<'a>) -> Result<Self, ProposeError> {
+        Self::of_size(question, LONGEST, SAMPLES)
+    }
+
+    /// The same with one sample for each pixel, and pictures as much smaller as is needed to look at several crexes within so
+    /// many seconds, summed over threads; none if they would be too small to show anything.
+    ///
+    /// # Errors
+    /// If the settings are refused.
+    pub fn within(question: Question<'a>, seconds: f64) -> Result<Option<Self>, ProposeError> {
+        let settings = small(question.settings, PILOT, 1);
+        let components = question.scene.components(question.settings.limits.glossy_threshold);
+        let pilot = render(&question, &settings, &Levels::full(components).crex())?;
+        let pilot_s = pilot.primary.seconds + pilot.stages.iter().map(|row| row.report.seconds).sum::<f64>();
+        let times = (seconds - pilot_s) / FULL_ONES / pilot_s;
+        // Pixels go with the square of the side. Not a number, if nothing is known of either, is too small as well.
+        let longest = (PILOT * times.sqrt()).min(LONGEST);
+        if longest >= SHORTEST { Self::of_size(question, longest, 1).map(Some) } else { Ok(None) }
+    }
+
+    fn of_size(question: Question<'a>, longest: f64, samples: u32) -> Result<Self, ProposeError> {
         let asked = question.settings;
-        let factor = (asked.width.max(asked.height) as f64 / LONGEST).max(1.0);
-        let small = |pixels: usize| ((pixels as f64 / factor).round() as usize).max(1);
-        let (width, height) = (small(asked.width), small(asked.height));
-        let settings = Settings { width, height, samples: SAMPLES, ..asked.clone() };
+        let settings = small(asked, longest, samples);
+        let (width, height) = (settings.width, settings.height);
         let scale = (asked.width * asked.height) as f64 * f64::from(asked.samples)
-            / ((width * height) as f64 * f64::from(SAMPLES));
+            / ((width * height) as f64 * f64::from(samples));
         let components = question.scene.components(asked.limits.glossy_threshold);
-        let rendering = render(&question, &settings, &Levels::full(components).crex())?;
+        let text = Levels::full(components).crex();
+        let rendering = render(&question, &settings, &text)?;
         let full = rendering.film.beauty();
         let exposure = question.exposure.unwrap_or_else(|| usual_exposure(&full));
         let (mut rays, mut seconds) = (PerComponent::<u64>::default(), PerComponent::<f64>::default());
@@ -100,7 +127,12 @@ impl<'a> Profile<'a> {
         let full = Picture::of_radiance(&full);
         let display = question.display.with_larger_pixels(asked.width as f64 / width as f64);
         let known = BTreeMap::new();
-        Ok(Self { question, settings, display, exposure, full, primary_s, ray_s, scale, components, known })
+        let mut profile =
+            Self { question, settings, display, exposure, full, primary_s, ray_s, scale, components, known };
+        let seconds = scale * profile.small_seconds(&rendering);
+        let whole = Forecast { small_loss_jod: 0.0, loss_jod: visibility::loss_jod(0.0), seconds };
+        profile.known.insert(text, whole);
+        Ok(profile)
     }
 
     /// The components that the scene can spawn.
@@ -148,6 +180,13 @@ impl<'a> Profile<'a> {
         let stages = rendering.stages.iter().map(|row| row.report.rays as f64 * self.ray_s[row.stage.component]);
         rendering.primary.rays as f64 * self.primary_s + stages.sum::<f64>()
     }
+}
+
+/// Settings for a small picture.
+fn small(asked: &Settings, longest: f64, samples: u32) -> Settings {
+    let factor = (asked.width.max(asked.height) as f64 / longest).max(1.0);
+    let small = |pixels: usize| ((pixels as f64 / factor).round() as usize).max(1);
+    Settings { width: small(asked.width), height: small(asked.height), samples, ..asked.clone() }
 }
 
 /// Renders by a crex that the module has spelled.

@@ -24,7 +24,8 @@ impl RayKind {
     ];
 
     /// Its place in [`Self::ALL`].
-    pub(super) fn index(self) -> usize {
+    #[must_use]
+    pub fn index(self) -> usize {
         match self {
             Self::Primary => 0,
             Self::Of(component) => 1 + component as usize,

@@ -13,6 +13,7 @@ use crate::console::{self, Failure};
 use crate::options::RadianceOptions;
 use crate::render::{self, Prepared};
 use crate::scene_files::SceneArgs;
+use crate::timed;
 
 /// What `crex auto` takes besides rpict's options.
 #[derive(clap::Args, Clone, Debug)]
@@ -24,6 +25,9 @@ pub(crate) struct Args {
     /// Samples for each pixel of the picture that times are predicted for
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     spp: u32,
+    /// Choose for this time instead of --tolerance: the least predicted loss whose tracing is predicted to take no longer
+    #[arg(long, value_name = "SECONDS", value_parser = timed::seconds)]
+    time: Option<f64>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -66,11 +70,13 @@ impl Judged {
 /// The object that `--json` prints.
 #[derive(Serialize)]
 struct Report {
-    /// The crex proposed: the cheapest step within the tolerance.
+    /// The crex proposed: the cheapest step within the tolerance, or the best within the time.
     crex: String,
     predicted_loss_jod: f64,
     predicted_s: f64,
     tolerance_jod: f64,
+    /// The time that it was chosen for, in place of the tolerance.
+    time_s: Option<f64>,
     exposure: f64,
     width: usize,
     height: usize,
@@ -124,12 +130,20 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions) -> Result<(), Failure>
     };
     let mut profile = Profile::new(question).map_err(refused)?;
     let proposal = propose::propose_from(&mut profile).map_err(refused)?;
-    let chosen = proposal.within_loss(tolerance).clone();
+    let threads = timed::threads(&settings) as f64;
+    let chosen = match args.time {
+        None => proposal.within_loss(tolerance).clone(),
+        Some(seconds) => proposal.within_seconds(seconds * threads).clone(),
+    };
     let modulated = propose::modulate(&mut profile, &chosen, tolerance).map_err(refused)?;
     if args.json {
-        console::print_json(&report(&proposal, &chosen, modulated, tolerance, &settings))
+        console::print_json(&report(&proposal, &chosen, modulated, (tolerance, args.time), &settings))
     } else {
-        console::print(&words(&proposal, &chosen, &modulated, tolerance, &settings))
+        let why = match args.time {
+            None => format!("cheapest within {tolerance} JOD"),
+            Some(seconds) => format!("least loss within {seconds} s on {threads} threads, of all that were looked at"),
+        };
+        console::print(&words(&proposal, &chosen, &modulated, &why, &settings))
     }
 }
 
@@ -141,7 +155,13 @@ pub(crate) fn refused(error: ProposeError) -> Failure {
     }
 }
 
-fn report(proposal: &Proposal, chosen: &Step, modulated: Modulated, tolerance: f64, settings: &Settings) -> Report {
+fn report(
+    proposal: &Proposal,
+    chosen: &Step,
+    modulated: Modulated,
+    (tolerance, time): (f64, Option<f64>),
+    settings: &Settings,
+) -> Report {
     let step = |step: &Step| StepReport {
         crex: step.crex.clone(),
         predicted_loss_jod: step.forecast.loss_jod,
@@ -152,6 +172,7 @@ fn report(proposal: &Proposal, chosen: &Step, modulated: Modulated, tolerance: f
         predicted_loss_jod: chosen.forecast.loss_jod,
         predicted_s: chosen.forecast.seconds,
         tolerance_jod: tolerance,
+        time_s: time,
         exposure: proposal.exposure,
         width: settings.width,
         height: settings.height,
@@ -162,19 +183,21 @@ fn report(proposal: &Proposal, chosen: &Step, modulated: Modulated, tolerance: f
 }
 
 /// The proposal for people.
-fn words(proposal: &Proposal, chosen: &Step, modulated: &Modulated, tolerance: f64, settings: &Settings) -> String {
+fn words(proposal: &Proposal, chosen: &Step, modulated: &Modulated, why: &str, settings: &Settings) -> String {
     let Settings { width, height, samples, .. } = settings;
     let mut text = format!(
         "Crexes by predicted gain per second; {width} x {height} pixels, {samples} samples each, exposure {:.3}.\n\
          Seconds are of tracing, summed over threads.\n\n  loss JOD    seconds  crex\n",
         proposal.exposure
     );
-    for step in &proposal.steps {
+    // What is chosen for a time may be no step.
+    let other = (!proposal.steps.contains(chosen)).then_some(chosen);
+    for step in proposal.steps.iter().chain(other) {
         let mark = if step.crex == chosen.crex { '*' } else { ' ' };
         let name = if step.crex.is_empty() { "(direct light alone)" } else { &step.crex };
         text.push_str(&format!("{mark} {:8.3} {:10.2}  {name}\n", step.forecast.loss_jod, step.forecast.seconds));
     }
-    text.push_str(&format!("\n* cheapest within {tolerance} JOD. With an importance map: --crex '{}'", modulated.crex));
+    text.push_str(&format!("\n* {why}. With an importance map: --crex '{}'", modulated.crex));
     if !modulated.thresholds.is_empty() {
         let list: Vec<String> = modulated.thresholds.iter().map(f32::to_string).collect();
         text.push_str(&format!(" --thresholds {}, or --continuous", list.join(",")));

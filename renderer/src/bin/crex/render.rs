@@ -1,5 +1,6 @@
 //! `crex render`: scenes to pictures.
 
+mod chosen;
 mod request;
 mod shards;
 
@@ -28,7 +29,8 @@ pub(crate) use shards::write_joined;
 pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// What to trace and in which order, such as 'T{RSGM}'; '' is primary rays and direct light alone
+    /// What to trace and in which order, such as 'T{RSGM}'; '' is primary rays and direct light alone; `auto` is chosen for
+    /// --time
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true)]
     crex: String,
     /// The picture: .exr with a layer for each component, .hdr or .png; `-` is HDR on standard output. May be repeated
@@ -122,6 +124,9 @@ pub(crate) fn component(text: &str) -> Result<Component, String> {
 }
 
 pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock) -> Result<(), Failure> {
+    let choose = args.crex == chosen::AUTO;
+    let with_crex = if choose { Some(chosen::with_crex(args)?) } else { None };
+    let args = with_crex.as_ref().unwrap_or(args);
     if let Some(file) = &args.views {
         let views = frames::views(file)?;
         // All frames have the size that the first view makes.
@@ -132,7 +137,10 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         return shards::run(args, shard, &prepare(args, options)?, clock);
     }
     let outputs = outputs(args)?;
-    let prepared = prepare(args, options)?;
+    let mut prepared = prepare(args, options)?;
+    if let (true, Some(seconds)) = (choose, args.time) {
+        chosen::choose(&mut prepared, seconds, clock)?;
+    }
     let request = &prepared.request;
     if let Some(seconds) = args.time {
         return run_timed(args, &prepared, &outputs, seconds, clock);

@@ -302,6 +302,20 @@ struct Recorded {
     timed: Option<TimedStats>,
 }
 
+/// The crex of a file of `--stats`.
+pub(crate) fn recorded_crex(file: &Path) -> Result<String, Failure> {
+    recorded(file).map(|recorded| recorded.crex)
+}
+
+fn recorded(file: &Path) -> Result<Recorded, Failure> {
+    let name = file.display();
+    let text = fs::read_to_string(file).map_err(|error| Failure::input(format!("--replay {name}: {error}")))?;
+    serde_json::from_str(&text).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        Failure::input(format!("{name}:{line}:{column}: not what --stats writes: {error}"))
+    })
+}
+
 /// Renders what a file of `--stats` says once more, and says how it is to be packed.
 pub(crate) fn replay(
     file: &Path,
@@ -309,11 +323,7 @@ pub(crate) fn replay(
     clock: &MonotonicClock,
 ) -> Result<Option<(TimedRendering, Compression)>, Failure> {
     let name = file.display();
-    let text = fs::read_to_string(file).map_err(|error| Failure::input(format!("--replay {name}: {error}")))?;
-    let recorded: Recorded = serde_json::from_str(&text).map_err(|error| {
-        let (line, column) = (error.line(), error.column());
-        Failure::input(format!("{name}:{line}:{column}: not what --stats writes: {error}"))
-    })?;
+    let recorded = recorded(file)?;
     let settings = &prepared.request.settings;
     let here = [
         ("crex", prepared.request.program.text().to_owned(), recorded.crex.clone()),

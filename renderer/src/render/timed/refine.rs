@@ -4,14 +4,14 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use crate::component::Component;
 use crate::crex::ThresholdError;
 use crate::film::{Block, Plane, Planes};
 use crate::schedule::{ProfileCache, RayKind};
 use crate::transport::{Parcel, Tracer, Workspace, rank};
+use crate::work::WorkReport;
 
 use super::super::Renderer;
-use super::super::outcome::Outcome;
+use super::super::outcome::{Outcome, add_report};
 use super::ladder::{Level, scrambled};
 
 /// Seconds left for something; negative once they are over.
@@ -109,7 +109,7 @@ impl Refinement {
         profile: &mut ProfileCache,
     ) -> Result<(), ThresholdError> {
         let paths = renderer.paths();
-        let mut by_thread = vec![Outcome::default(); rayon::current_num_threads()];
+        let mut by_thread = vec![Learnt::default(); rayon::current_num_threads()];
         let mut in_time = true;
         while in_time && self.units < units {
             let index = self.units / self.tiles.len() as u64;
@@ -117,8 +117,8 @@ impl Refinement {
             in_time = self.run_level(renderer, tracer, Level::new(index), end, (left_s, whole_s), &mut by_thread)?;
         }
         // One observation for each thread: those of single levels would tell more about the system's interruptions.
-        for outcome in &by_thread {
-            learn(profile, &paths, outcome, by_thread.len() as f64);
+        for learnt in &by_thread {
+            learnt.teach(profile, &paths, by_thread.len() as f64);
         }
         Ok(())
     }
@@ -131,7 +131,7 @@ impl Refinement {
         level: Level,
         end: u64,
         (left_s, whole_s): (Left<'_>, Left<'_>),
-        by_thread: &mut [Outcome],
+        by_thread: &mut [Learnt],
     ) -> Result<bool, ThresholdError> {
         let first = self.units;
         let unit_s = if self.spent.1 > 0.0 { self.spent.0 / self.spent.1 * level.share() } else { 0.0 };
@@ -142,7 +142,8 @@ impl Refinement {
         let ranks = level.ranks.0..level.ranks.1;
         let this = &*self;
         let done = rayon::broadcast(|_| {
-            let (mut workspace, mut outcome) = (Workspace::default(), Outcome::default());
+            let (mut workspace, mut outcome, mut learnt) =
+                (Workspace::default(), Outcome::default(), Learnt::default());
             let mut parcel: Option<Parcel> = None;
             loop {
                 let forced = first == 0 && next.load(Ordering::Relaxed) == 0;
@@ -169,6 +170,7 @@ impl Refinement {
                     given_up.lock().expect("no thread panicked").push(unit);
                     continue;
                 };
+                learnt.take(&done);
                 outcome.add(done);
                 let mut sums = this.sums[place].lock().expect("no thread panicked");
                 parcel.add_to(&mut sums.sums, renderer.settings.ambient);
@@ -177,7 +179,7 @@ impl Refinement {
                     *weight += u32::from(ranks.contains(&rank));
                 }
             }
-            Ok(outcome)
+            Ok((outcome, learnt))
         });
         self.units = next.into_inner().min(end);
         let mut given_up = given_up.into_inner().expect("no thread panicked");
@@ -185,8 +187,8 @@ impl Refinement {
         self.missing.append(&mut given_up);
         self.missing.sort_unstable();
         for (outcome, sum) in done.into_iter().zip(by_thread) {
-            let outcome = outcome?;
-            sum.add(outcome.clone());
+            let (outcome, learnt) = outcome?;
+            sum.add(&learnt);
             self.spent.0 += outcome.primary.seconds + outcome.rows.iter().map(|row| row.report.seconds).sum::<f64>();
             self.outcome.add(outcome);
         }
@@ -206,17 +208,57 @@ impl Refinement {
     }
 }
 
-/// Teaches the profile what rays cost and spawn: so many threads share the work, so a ray takes that part of its thread's time.
-fn learn(profile: &mut ProfileCache, paths: &str, outcome: &Outcome, threads: f64) {
-    let Outcome { primary, rows, .. } = outcome;
-    profile.observe(RayKind::Primary, primary.rays, primary.seconds / threads);
-    profile.observe_children(paths, RayKind::Primary, primary.rays, &primary.spawned);
-    for component in Component::ALL {
-        let mut sum = crate::work::WorkReport::default();
-        for row in rows.iter().filter(|row| row.stage.component == component) {
-            super::super::outcome::add_report(&mut sum, &row.report);
+/// What a thread's rays of each kind cost and spawned.
+#[derive(Clone, Default)]
+struct Learnt([Kind; RayKind::ALL.len()]);
+
+#[derive(Clone, Copy, Default)]
+struct Kind {
+    /// Rays, and what they spawned.
+    report: WorkReport,
+    /// Those of them that were timed without an interruption.
+    timed_rays: u64,
+}
+
+impl Learnt {
+    /// Takes in what a unit did. A stage of a unit is mostly a fraction of a millisecond: if it took many times what the others
+    /// did, the thread had to wait for a processor, which says nothing of rays.
+    fn take(&mut self, unit: &Outcome) {
+        let rows = unit.rows.iter().map(|row| (RayKind::Of(row.stage.component), &row.report));
+        for (kind, report) in std::iter::once((RayKind::Primary, &unit.primary)).chain(rows) {
+            if report.rays == 0 {
+                continue;
+            }
+            let Kind { report: sum, timed_rays } = &mut self.0[kind.index()];
+            add_report(sum, &WorkReport { seconds: 0.0, ..*report });
+            let expected_s = sum.seconds * report.rays as f64 / (*timed_rays as f64).max(1.0);
+            if *timed_rays > 0 && expected_s > INTERRUPTED_S + INTERRUPTED * report.seconds {
+                // It was the others.
+                (*timed_rays, sum.seconds) = (0, 0.0);
+            }
+            if *timed_rays == 0 || report.seconds <= INTERRUPTED_S + INTERRUPTED * expected_s {
+                *timed_rays += report.rays;
+                sum.seconds += report.seconds;
+            }
         }
-        profile.observe(RayKind::Of(component), sum.rays, sum.seconds / threads);
-        profile.observe_children(paths, RayKind::Of(component), sum.rays, &sum.spawned);
+    }
+
+    fn add(&mut self, other: &Self) {
+        for (kind, more) in self.0.iter_mut().zip(&other.0) {
+            add_report(&mut kind.report, &more.report);
+            kind.timed_rays += more.timed_rays;
+        }
+    }
+
+    /// Teaches the profile: so many threads share the work, so a ray takes that part of its thread's time.
+    fn teach(&self, profile: &mut ProfileCache, paths: &str, threads: f64) {
+        for (kind, Kind { report, timed_rays }) in RayKind::ALL.into_iter().zip(&self.0) {
+            profile.observe(kind, *timed_rays, report.seconds / threads);
+            profile.observe_children(paths, kind, report.rays, &report.spawned);
+        }
     }
 }
+
+/// A stage of a unit that took longer than so many seconds and so many times what it should was interrupted.
+const INTERRUPTED_S: f64 = 1e-3;
+const INTERRUPTED: f64 = 8.0;
