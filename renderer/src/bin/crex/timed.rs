@@ -37,10 +37,10 @@ const TAKING_BACK_S: f64 = 20e-12;
 
 /// The part of the bound that is not used, against what the system does meanwhile: the programs of a machine take turns. Of bounds
 /// below a second as much less as they are shorter, since there is less time in which something can happen.
-const MARGIN: f64 = 0.01;
+const MARGIN: f64 = 0.015;
 
 /// Seconds to store a profile or what was done.
-const SMALL_FILE_S: f64 = 0.002;
+const SMALL_FILE_S: f64 = 0.001;
 
 /// What is written besides the pictures: its format where it is pictures too.
 #[derive(Clone, Copy, Debug, Default)]

@@ -237,8 +237,10 @@ const CHORE_S: f64 = 0.7e-9;
 /// rays of rounds, which run in larger sets.
 const SPRINKLE: &str = "sprinkle";
 
-/// A slower machine than this is a short interruption, not what is to be expected.
+/// A slower machine than this is a short interruption, not what is to be expected; one that is slower by less than this is as
+/// usual.
 const MOST_SLOWED: f64 = 4.0;
+const LEAST_SLOWED: f64 = 1.15;
 
 /// A sprinkle shorter than this tells nothing of the machine.
 const LEAST_SPRINKLE_S: f64 = 2e-3;
@@ -251,5 +253,6 @@ fn slower(sprinkle: &Refinement, known: &ProfileCache, profile: &mut ProfileCach
     let expected_ns = (1e9 * expected_s).round() as u64;
     profile.observe_writer(SPRINKLE, expected_ns, taken_s);
     let usual = known.predict_writer(SPRINKLE, expected_ns);
-    usual.filter(|usual| usual.mean_s > 0.0).map_or(1.0, |usual| (taken_s / usual.mean_s).clamp(1.0, MOST_SLOWED))
+    let slower = usual.filter(|usual| usual.mean_s > 0.0).map_or(1.0, |usual| taken_s / usual.mean_s);
+    if slower > LEAST_SLOWED { slower.min(MOST_SLOWED) } else { 1.0 }
 }
