@@ -17,7 +17,7 @@ pub use crate::cal::{Evaluator, Expression, Lambda, Memory};
 pub use field::{Applied, Field, Source};
 pub use font::Font;
 pub use law::{Form, Law};
-pub use place::{Place, Reflection};
+pub use place::{Inside, Place, Reflection};
 pub use step::{Finish, Step, apply};
 pub use table::Table;
 pub use text::{Spacing, Text};

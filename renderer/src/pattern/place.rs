@@ -19,14 +19,31 @@ pub struct Place<'a> {
     pub distance: f64,
     /// Coordinates on a mesh, if it has them.
     pub uv: Option<[f64; 2]>,
-    /// From the scene's coordinates to those of the instance or mesh that was hit, if one was.
-    pub object: Option<&'a Similarity>,
+    /// The instance or mesh that was hit, if one was.
+    pub object: Option<Inside<'a>>,
+}
+
+/// The way into an instance or a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Inside<'a> {
+    /// From the scene's coordinates to those of the instance that holds it, if one does.
+    pub around: Option<Similarity>,
+    /// From there, or from the scene's coordinates, to its own.
+    pub own: &'a Similarity,
+}
+
+impl Inside<'_> {
+    /// From the scene's coordinates to the innermost ones.
+    #[must_use]
+    pub fn whole(&self) -> Similarity {
+        self.around.map_or(*self.own, |around| around.then(self.own))
+    }
 }
 
 impl Place<'_> {
     /// The point in the coordinates of the object that was hit.
     pub(super) fn local_point(&self) -> DVec3 {
-        self.object.map_or(self.point, |object| object.point(self.point))
+        self.object.map_or(self.point, |object| object.whole().point(self.point))
     }
 
     /// A vector of the coordinates that `to_local` leads to, turned (not scaled) back into the scene's.
@@ -38,7 +55,7 @@ impl Place<'_> {
 
     /// From the scene's coordinates to those of a function whose own transform is undone by `inverse`.
     fn local(&self, inverse: &Similarity) -> Similarity {
-        self.object.map_or(*inverse, |object| object.then(inverse))
+        self.object.map_or(*inverse, |object| object.whole().then(inverse))
     }
 }
 

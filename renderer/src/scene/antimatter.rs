@@ -66,7 +66,7 @@ impl Scene {
     /// Says what an antimatter consists of and cuts away.
     pub(super) fn set_antimatter(&mut self, id: AntimatterId, own: &[SurfaceId], solids: &[SurfaceId]) {
         let items = |ids: &[SurfaceId]| -> Vec<_> {
-            self.items(&self.surfaces).filter(|item| ids.binary_search(&item.surface).is_ok()).collect()
+            self.items(&self.surfaces, &self.groups).filter(|item| ids.binary_search(&item.surface).is_ok()).collect()
         };
         let (volume, cut) = (Aggregate::new(items(own)), Aggregate::new(items(solids)));
         let antimatter = &mut self.antimatters[id.index()];

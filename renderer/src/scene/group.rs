@@ -6,17 +6,28 @@ use glam::DVec3;
 
 use super::{Scene, Surface};
 use crate::geometry::shape::Placed;
-use crate::geometry::{Hit, Passage, SurfaceId};
+use crate::geometry::{Hit, Passage, Shape, SurfaceId};
 use crate::material::MaterialId;
 use crate::math::Similarity;
+use crate::pattern::Inside;
 
 /// What is placed, once however often that is.
 #[derive(Clone, Debug)]
 pub(super) enum Content {
     /// The scene of an octree.
-    Surfaces(Vec<Surface>),
+    Scene(Inner),
     /// A triangle mesh.
     Mesh(Triangles),
+}
+
+/// What an instance holds: surfaces, and instances and meshes, whose surfaces' numbers follow those.
+#[derive(Clone, Debug)]
+pub(super) struct Inner {
+    pub(super) surfaces: Vec<Surface>,
+    /// By falling number of their first surface.
+    pub(super) groups: Vec<Group>,
+    /// Whether all of it stops light.
+    pub(super) is_opaque: bool,
 }
 
 /// A mesh.
@@ -48,26 +59,56 @@ pub(super) struct Group {
 /// What a hit on an instance or a mesh knows besides.
 #[derive(Clone, Copy, Debug)]
 pub struct Grouped<'a> {
-    /// From the scene's coordinates to those in which its modifiers are defined, if not the scene's.
-    pub object: Option<&'a Similarity>,
+    /// The way to the coordinates in which its modifiers are defined, if those are not the scene's.
+    pub object: Option<Inside<'a>>,
     /// What the vertices' normals add to the triangle's.
     pub bend: DVec3,
     /// Coordinates on the mesh.
     pub uv: Option<[f64; 2]>,
 }
 
+/// Where a surface's number leads: through instances within instances to what holds the surface itself.
+struct Place<'a> {
+    group: &'a Group,
+    /// The surfaces among which the group is placed.
+    beside: &'a [Surface],
+    /// Of the surface, in the group.
+    index: usize,
+    way: Inside<'a>,
+    /// The material of the outermost instance that has one, and the way to the coordinates in which that is defined, if
+    /// they are not the scene's.
+    over: Option<(MaterialId, Option<Inside<'a>>)>,
+}
+
+/// The group that a number belongs to, and its place there.
+fn find(groups: &[Group], number: usize) -> Option<(&Group, usize)> {
+    let at = groups.partition_point(|group| group.first as usize > number);
+    let group = groups.get(at)?;
+    Some((group, number - group.first as usize))
+}
+
 impl Scene {
-    fn group(&self, id: SurfaceId) -> Option<(&Group, usize)> {
-        let at = self.groups.partition_point(|group| group.first > id.0);
-        let group = self.groups.get(at)?;
-        Some((group, (id.0 - group.first) as usize))
+    fn group(&self, id: SurfaceId) -> Option<Place<'_>> {
+        let (group, index) = find(&self.groups, id.index())?;
+        let over = group.over.map(|over| (over, None));
+        let way = Inside { around: None, own: &group.to_group };
+        let mut place = Place { group, beside: &self.surfaces, index, way, over };
+        while let Content::Scene(inner) = &*place.group.content
+            && place.index >= inner.surfaces.len()
+        {
+            let (group, index) = find(&inner.groups, place.index)?;
+            let over = place.over.or_else(|| group.over.map(|over| (over, Some(place.way))));
+            let way = Inside { around: Some(place.way.whole()), own: &group.to_group };
+            place = Place { group, beside: &inner.surfaces, index, way, over };
+        }
+        Some(place)
     }
 
     pub(super) fn grouped_surface(&self, id: SurfaceId) -> &Surface {
         match self.group(id) {
-            Some((group, index)) => match &*group.content {
-                Content::Surfaces(surfaces) => &surfaces[index],
-                Content::Mesh(_) => &self.surfaces[group.surface.index()],
+            Some(place) => match &*place.group.content {
+                Content::Scene(inner) => &inner.surfaces[place.index],
+                Content::Mesh(_) => &place.beside[place.group.surface.index()],
             },
             // Numbers come from hits, and those from surfaces.
             None => &self.surfaces[id.index()],
@@ -75,30 +116,40 @@ impl Scene {
     }
 
     pub(super) fn grouped_material(&self, id: SurfaceId) -> Option<MaterialId> {
-        let (group, index) = self.group(id)?;
-        group.over.or_else(|| match &*group.content {
-            Content::Surfaces(surfaces) => surfaces[index].material,
-            Content::Mesh(mesh) => mesh.materials[index],
+        let place = self.group(id)?;
+        place.over.map(|(over, _)| over).or_else(|| match &*place.group.content {
+            Content::Scene(inner) => inner.surfaces[place.index].material,
+            Content::Mesh(mesh) => mesh.materials[place.index],
         })
     }
 
-    /// What an instance or a mesh does to shadow rays.
-    pub(super) fn group_passage(&self, placed: &Placed) -> Passage {
-        let Some((group, _)) = self.group(SurfaceId(placed.first())) else { return Passage::Opaque };
-        let opaque =
-            |material: Option<MaterialId>| material.is_some_and(|material| self.passage(material) == Passage::Opaque);
+    /// What an instance or a mesh among `groups` does to shadow rays.
+    pub(super) fn group_passage(&self, placed: &Placed, groups: &[Group]) -> Passage {
+        let Some((group, _)) = find(groups, placed.first() as usize) else { return Passage::Opaque };
         let all = match (&group.over, &*group.content) {
-            (Some(over), _) => opaque(Some(*over)),
-            (None, Content::Surfaces(surfaces)) => surfaces.iter().all(|surface| opaque(surface.material)),
+            (Some(over), _) => self.is_opaque(Some(*over)),
+            (None, Content::Scene(inner)) => inner.is_opaque,
             (None, Content::Mesh(mesh)) => {
                 let mut seen: Vec<Option<MaterialId>> = mesh.materials.clone();
                 seen.sort_unstable();
                 seen.dedup();
-                seen.into_iter().all(opaque)
+                seen.into_iter().all(|material| self.is_opaque(material))
             }
         };
         // What is not opaque throughout is followed hit by hit.
         if all { Passage::Opaque } else { Passage::Refracting }
+    }
+
+    /// Whether all that an instance is to hold stops light.
+    pub(super) fn are_opaque(&self, surfaces: &[Surface], groups: &[Group]) -> bool {
+        surfaces.iter().all(|surface| match &surface.shape {
+            Shape::Placed(placed) => self.group_passage(placed, groups) == Passage::Opaque,
+            _ => self.is_opaque(surface.material),
+        })
+    }
+
+    fn is_opaque(&self, material: Option<MaterialId>) -> bool {
+        material.is_some_and(|material| self.passage(material) == Passage::Opaque)
     }
 
     /// What a hit on an instance or a mesh knows besides; `None` for the scene's own surfaces.
@@ -107,15 +158,16 @@ impl Scene {
         if self.groups.is_empty() || hit.surface.index() < self.surfaces.len() {
             return None;
         }
-        let (group, index) = self.group(hit.surface)?;
-        let object = group.over.is_none().then_some(&group.to_group);
+        let Place { group, index, way, over, .. } = self.group(hit.surface)?;
+        let object = over.map_or(Some(way), |(_, way)| way);
         let mut grouped = Grouped { object, bend: DVec3::ZERO, uv: None };
         if let Content::Mesh(mesh) = &*group.content {
+            let to_group = way.whole();
             let corners = mesh.triangles[index].map(|vertex| vertex as usize);
-            let weights = barycentric(corners.map(|corner| mesh.positions[corner]), group.to_group.point(hit.point));
+            let weights = barycentric(corners.map(|corner| mesh.positions[corner]), to_group.point(hit.point));
             if let [Some(a), Some(b), Some(c)] = corners.map(|corner| mesh.normals[corner]) {
                 let normal = a * weights[0] + b * weights[1] + c * weights[2];
-                let turned = group.to_group.affine.matrix3.transpose() * normal;
+                let turned = to_group.affine.matrix3.transpose() * normal;
                 if let Some(normal) = turned.try_normalize() {
                     grouped.bend = normal - hit.normal;
                 }

@@ -110,15 +110,20 @@ impl Scene {
     /// Builds the hierarchy of all visible surfaces.
     #[must_use]
     pub fn aggregate(&self) -> Aggregate {
-        Aggregate::new(self.items(&self.surfaces))
+        let visible = self.items(&self.surfaces, &self.groups);
+        Aggregate::new(visible.filter(|item| self.is_visible(&self.surfaces[item.surface.index()])))
     }
 
-    /// The visible ones of some surfaces.
-    fn items<'a>(&'a self, surfaces: &'a [Surface]) -> impl Iterator<Item = Item> + 'a {
+    fn is_visible(&self, surface: &Surface) -> bool {
+        surface.material.is_some() || matches!(surface.shape, Shape::Placed(_))
+    }
+
+    /// Some surfaces, among which there are `groups`; those without a material let light through.
+    fn items<'a>(&'a self, surfaces: &'a [Surface], groups: &'a [group::Group]) -> impl Iterator<Item = Item> + 'a {
         surfaces.iter().enumerate().filter_map(|(index, surface)| {
             let passage = match &surface.shape {
-                Shape::Placed(placed) => self.group_passage(placed),
-                _ => self.passage(surface.material?),
+                Shape::Placed(placed) => self.group_passage(placed, groups),
+                _ => surface.material.map_or(Passage::Straight, |material| self.passage(material)),
             };
             let id = SurfaceId(u32::try_from(index).ok()?);
             // Whether a surface that antimatter cuts away is there depends on the place.

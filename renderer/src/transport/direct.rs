@@ -159,7 +159,9 @@ impl Lit<'_> {
 
     /// The fraction that a surface lets through without bending the ray; `None` if it stops it.
     fn straight(&self, light: &Light, hit: &Hit, ray: &Ray, memory: &mut Memory) -> Option<Rgb> {
-        let passed = passed(self.scene, light, self.scene.material(hit.surface)?, hit, ray, memory);
+        // In an instance, what its file gives no material is there for the instance's own, if it has one.
+        let Some(material) = self.scene.material(hit.surface) else { return Some(Rgb::ONE) };
+        let passed = passed(self.scene, light, material, hit, ray, memory);
         (passed != Rgb::ZERO).then_some(passed)
     }
 

@@ -64,6 +64,12 @@ impl Placed {
         self.0.first
     }
 
+    /// The same set with other numbers, the first being `first`.
+    #[must_use]
+    pub fn numbered(self, first: u32) -> Self {
+        Self { first, ..self }
+    }
+
     /// The nearest hit beyond `t_min`, in the group's coordinates but for its distance.
     fn nearest(&self, origin: DVec3, dir: DVec3, t_min: f64, t_max: f64) -> Option<Hit> {
         let scale = self.0.to_group.scale;

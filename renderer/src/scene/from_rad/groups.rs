@@ -11,19 +11,24 @@ use crate::geometry::{Aggregate, Item, Passage, Shape, SurfaceId};
 use crate::material::MaterialId;
 use crate::math::Similarity;
 use crate::rad::{self, Argument, Class, Document, Kind, Primitive, Transform};
-use crate::scene::group::{Content, Group, Triangles};
+use crate::scene::group::{Content, Group, Inner, Triangles};
 
-/// What files hold, by name; `None` is wrong (and has been told).
+/// Instances within instances, at most: a ray's way into them takes time in proportion to 2^depth.
+const MOST_NESTED: usize = 8;
+
+/// What files hold, by the name under which each was found; `None` is wrong (and has been told).
 #[derive(Default)]
 pub(super) struct Groups {
     known: HashMap<String, Option<Ready>>,
+    /// The octrees that are being read, from the scene's own inwards.
+    open: Vec<String>,
     /// Numbers of surfaces that groups have taken, from the last downwards.
     taken: u32,
 }
 
 /// A file's content, ready to be placed.
 #[derive(Clone)]
-struct Ready {
+pub(super) struct Ready {
     content: Arc<Content>,
     aggregate: Arc<Aggregate>,
     bounds: [DVec3; 2],
@@ -33,11 +38,6 @@ struct Ready {
 impl Builder<'_> {
     /// Adds an instance or a mesh.
     pub(super) fn add_group(&mut self, primitive: &Primitive, over: Option<MaterialId>) {
-        if self.within {
-            let message = format!("`{}`: an instance or a mesh within an instance is not supported", primitive.name);
-            self.reporter.error(primitive, Argument::Kind, message);
-            return;
-        }
         let Some((file, words)) = primitive.strings.split_first() else {
             let message = format!("{} `{}` names no file", primitive.kind, primitive.name);
             self.reporter.error(primitive, Argument::Kind, message);
@@ -55,11 +55,7 @@ impl Builder<'_> {
                 return;
             }
         };
-        if !self.groups.known.contains_key(file) {
-            let ready = self.read_group(primitive, file);
-            self.groups.known.insert(file.clone(), ready);
-        }
-        let Some(Some(ready)) = self.groups.known.get(file).cloned() else { return };
+        let Some(ready) = self.ready(primitive, file) else { return };
         let room = u32::MAX - self.groups.taken;
         let own = u32::try_from(self.scene.surfaces.len()).unwrap_or(u32::MAX);
         if ready.count > room.saturating_sub(own) {
@@ -81,7 +77,17 @@ impl Builder<'_> {
         self.scene.surfaces.push(surface);
     }
 
-    fn read_group(&mut self, primitive: &Primitive, file: &str) -> Option<Ready> {
+    /// What a file holds, read when it is first needed.
+    fn ready(&mut self, primitive: &Primitive, file: &str) -> Option<Ready> {
+        if let Some(known) = self.named.get(file) {
+            return known.clone();
+        }
+        let ready = self.find_group(primitive, file);
+        self.named.insert(file.to_owned(), ready.clone());
+        ready
+    }
+
+    fn find_group(&mut self, primitive: &Primitive, file: &str) -> Option<Ready> {
         let found = match self.materials.shelf.find(file, &self.document.folders) {
             Ok(found) => found,
             Err(why) => {
@@ -89,21 +95,46 @@ impl Builder<'_> {
                 return None;
             }
         };
-        let source = rad::Source::from(found);
+        if let Some(known) = self.groups.known.get(&found.name) {
+            return known.clone();
+        }
+        let open = &self.groups.open;
+        let wrong = if open.contains(&found.name) {
+            let way: Vec<&str> = open.iter().map(String::as_str).chain([found.name.as_str()]).collect();
+            Some(format!("{}: an octree cannot hold an instance of itself", way.join(" -> ")))
+        } else {
+            (open.len() >= MOST_NESTED).then(|| format!("instances lie more than {MOST_NESTED} deep in each other"))
+        };
+        if let Some(message) = wrong {
+            self.reporter.error(primitive, Argument::String(0), message);
+            return None;
+        }
+        let name = found.name.clone();
+        let ready = self.read_group(primitive, rad::Source::from(found));
+        self.groups.known.insert(name, ready.clone());
+        ready
+    }
+
+    fn read_group(&mut self, primitive: &Primitive, source: rad::Source) -> Option<Ready> {
         if primitive.kind == Kind::Mesh {
             return match rad::read_mesh(&source) {
                 Ok(mesh) => self.mesh(&mesh),
                 Err(error) => self.told(vec![error]),
             };
         }
-        let options = rad::Options::default();
-        let document = if file.ends_with(".rad") {
+        let (options, name) = (rad::Options::default(), source.name.clone());
+        let document = if name.ends_with(".rad") {
             rad::read(&[source], self.materials.shelf.files(), &options)
         } else {
             rad::read_octree(&source, self.materials.shelf.files(), &options)
         };
         match document {
-            Ok(document) => self.instance(&document),
+            Ok(document) => {
+                self.groups.open.push(name);
+                let ready = self.instance(&document);
+                self.groups.open.pop();
+                ready
+            }
             Err(errors) => self.told(errors),
         }
     }
@@ -117,35 +148,52 @@ impl Builder<'_> {
     /// Builds another document's surfaces into this scene's materials. Lights in it do not shine, as in Radiance.
     fn instance(&mut self, document: &Document) -> Option<Ready> {
         let outside = std::mem::take(&mut self.scene.surfaces);
+        let groups = std::mem::take(&mut self.scene.groups);
         let (lights, far) = (std::mem::take(&mut self.scene.lights), std::mem::take(&mut self.scene.far));
+        let taken = std::mem::take(&mut self.groups.taken);
         let mut inner = Builder {
             document,
             reporter: Reporter::new(document),
             scene: std::mem::take(&mut self.scene),
             materials: self.materials.another(),
-            groups: Groups::default(),
+            groups: std::mem::take(&mut self.groups),
+            named: HashMap::new(),
             placed_by: Vec::new(),
-            within: true,
         };
         for (index, primitive) in document.primitives.iter().enumerate() {
             if primitive.kind.class() == Class::Surface && !inner.reporter.full() {
                 inner.add_surface(index, primitive);
             }
         }
-        let Builder { reporter, scene, .. } = inner;
+        let Builder { reporter, scene, groups: known, .. } = inner;
         let Reporter { errors, warnings, .. } = reporter;
-        self.scene = scene;
-        let surfaces = std::mem::replace(&mut self.scene.surfaces, outside);
+        (self.scene, self.groups) = (scene, known);
+        let used = std::mem::replace(&mut self.groups.taken, taken);
+        let mut surfaces = std::mem::replace(&mut self.scene.surfaces, outside);
+        let mut groups = std::mem::replace(&mut self.scene.groups, groups);
         (self.scene.lights, self.scene.far) = (lights, far);
         let room = rad::MAX_ERRORS.saturating_sub(self.reporter.warnings.len());
         self.reporter.warnings.extend(warnings.into_iter().take(room));
         if !errors.is_empty() {
             return self.told(errors);
         }
-        let aggregate = Aggregate::new(self.scene.items(&surfaces));
-        let count = u32::try_from(surfaces.len()).ok()?;
+        // Within an instance, the surfaces of groups follow its own.
+        let own = u32::try_from(surfaces.len()).ok()?;
+        let count = own.checked_add(used)?;
+        let renumbered = |first: u32| own + (first - (u32::MAX - used));
+        for surface in &mut surfaces {
+            if let Shape::Placed(placed) = &mut surface.shape {
+                *placed = placed.clone().numbered(renumbered(placed.first()));
+            }
+        }
+        for group in &mut groups {
+            group.first = renumbered(group.first);
+        }
+        let aggregate = Aggregate::new(self.scene.items(&surfaces, &groups));
         let bounds = bounds(surfaces.iter().map(|surface| surface.shape.bounds()));
-        Some(Ready { content: Arc::new(Content::Surfaces(surfaces)), aggregate: Arc::new(aggregate), bounds, count })
+        let is_opaque = self.scene.are_opaque(&surfaces, &groups);
+        let content = Content::Scene(Inner { surfaces, groups, is_opaque });
+        Some(Ready { content: Arc::new(content), aggregate: Arc::new(aggregate), bounds, count })
     }
 
     fn mesh(&mut self, mesh: &rad::Mesh) -> Option<Ready> {

@@ -12,12 +12,14 @@ mod materials;
 mod programs;
 mod shapes;
 
+use std::collections::HashMap;
+
 use super::light::Light;
 use super::{DEFAULT_RELAYS, FarId, FarSource, Scene, SourceId, Surface};
 use crate::geometry::{Shape, SurfaceId};
 use crate::material::{EmitterKind, MaterialId};
 use crate::rad::{self, Argument, Class, Document, Files, Kind, MemoryFiles, Primitive};
-use groups::Groups;
+use groups::{Groups, Ready};
 use materials::Materials;
 
 /// Errors and warnings with their places, as many of each as one reads.
@@ -74,8 +76,8 @@ impl Scene {
             scene: Self::default(),
             materials: Materials::new(files),
             groups: Groups::default(),
+            named: HashMap::new(),
             placed_by: Vec::new(),
-            within: false,
         };
         for (index, primitive) in document.primitives.iter().enumerate() {
             if primitive.kind.class() == Class::Surface && !builder.reporter.full() {
@@ -103,10 +105,10 @@ struct Builder<'a> {
     scene: Scene,
     materials: Materials<'a>,
     groups: Groups,
+    /// What the files hold that the document names.
+    named: HashMap<String, Option<Ready>>,
     /// The surfaces with their modifiers' places in the document.
     placed_by: Vec<(SurfaceId, usize)>,
-    /// Whether this is the content of an instance.
-    within: bool,
 }
 
 impl Builder<'_> {

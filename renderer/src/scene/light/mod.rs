@@ -110,7 +110,7 @@ impl Light {
         }
         let mut sample = self.sampler.sample(image, u)?;
         match self.emitter.kind() {
-            EmitterKind::Glow { radius } if sample.distance > radius => return None,
+            EmitterKind::Glow { radius } if self.sampler.reach(image, &sample) > radius => return None,
             EmitterKind::Spot(spot) => {
                 if !spot.contains(-sample.dir) {
                     return None;

@@ -56,6 +56,14 @@ impl Sampler {
             }),
         }
     }
+
+    /// The distance that a glow's radius limits: to the middle of a sphere, as in Radiance, to the sample of other shapes.
+    pub(super) fn reach(&self, from: DVec3, sample: &Sample) -> f64 {
+        match self {
+            Self::Sphere(sphere) => sphere.centre().distance(from),
+            _ => sample.distance,
+        }
+    }
 }
 
 /// The sample of a point of a surface that stands for `area` of it; `None` if the surface faces away there.

@@ -221,6 +221,12 @@ fn spotlights_keep_their_cone_and_glows_their_radius() {
     let glow = |radius| Light::of_surface(SurfaceId(0), &disc, Emitter::glow(&[1.0, 1.0, 1.0, radius]).unwrap());
     assert!(glow(1.01).sample(DVec3::ZERO, [0.5; 2]).is_some());
     assert!(glow(0.99).sample(DVec3::ZERO, [0.5; 2]).is_none());
+
+    // A ball's counts from its middle: rtrace shows a glow of radius 1.5 at (0, 0, 1) as far as sqrt(1.5^2 - 1) = 1.118.
+    let ball = Shape::Sphere(Sphere::new(DVec3::Z, 0.25).unwrap());
+    let glow = Light::of_surface(SurfaceId(0), &ball, Emitter::glow(&[1.0, 1.0, 1.0, 1.5]).unwrap());
+    let at = |x: f64| glow.sample(DVec3::X * x, [0.5; 2]);
+    assert!(at(1.117).is_some() && at(1.119).is_none());
 }
 
 /// A scene of a lamp and mirrors, each a square of side 2 around a point, facing along a normal.
