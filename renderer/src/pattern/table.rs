@@ -112,15 +112,16 @@ impl Table {
         Ok(Self { axes, values, channels: 1 })
     }
 
-    /// A picture of `width` pixels a row as a table over v (up) and u (to the right); its shorter side spans 0 to 1, and
-    /// values are those of pixel centres. `rows` come from the top. `None` if there is no pixel.
+    /// A picture of `width` pixels a row as a table over v (up) and u (to the right); its shorter side spans 0 to 1. As
+    /// Radiance 6.0 has it, the first and the last pixel of a row stand at its ends (later versions may put them half a pixel
+    /// inward). `rows` come from the top. `None` if there is no pixel.
     #[must_use]
     pub fn of_picture(width: usize, rows: &[[f32; 3]]) -> Option<Self> {
         let height = rows.len().checked_div(width).filter(|&height| height > 0 && height * width == rows.len())?;
         let side = width.min(height) as f64;
         let axis = |count: usize| match count {
-            1 => Axis::Uneven(vec![0.5 / side]),
-            _ => Axis::Even { first: 0.5 / side, last: (count as f64 - 0.5) / side, count },
+            1 => Axis::Uneven(vec![0.0]),
+            _ => Axis::Even { first: 0.0, last: count as f64 / side, count },
         };
         let values = rows.chunks_exact(width).rev().flatten().flatten().copied().collect();
         Some(Self { axes: vec![axis(height), axis(width)], values, channels: 3 })

@@ -56,8 +56,8 @@ fn pictures_are_tables() {
     let table = Table::of_picture(3, &pixels).unwrap();
     let red = |u: f64, v: f64| table.value(&[v, u])[0];
     // Two rows: side 2 spans 0 to 1, so the row of three spans 0 to 1.5.
-    assert_eq!((red(0.25, 0.25), red(1.25, 0.25), red(0.25, 0.75)), (4.0, 6.0, 1.0));
-    assert_eq!(table.value(&[0.25, 1.25]), [6.0, 0.0, 7.0]);
+    assert_eq!((red(0.0, 0.0), red(1.5, 0.0), red(0.75, 1.0), red(0.375, 1.0)), (4.0, 6.0, 2.0, 1.5));
+    assert_eq!(table.value(&[0.0, 1.5]), [6.0, 0.0, 7.0]);
     assert!(Table::of_picture(0, &[]).is_none());
 }
 

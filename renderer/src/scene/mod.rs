@@ -170,7 +170,7 @@ impl Scene {
         self.lights.extend(images);
     }
 
-    /// The mirror that relays lights in a material; patterns on it are left out of that.
+    /// The mirror that relays lights in a material.
     #[must_use]
     pub fn mirror(&self, material: MaterialId) -> Option<&Mirror> {
         match &self.materials[material.index()] {

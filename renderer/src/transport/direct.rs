@@ -8,7 +8,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::color::Rgb;
-use crate::geometry::{Aggregate, Hit, Ray, Shadow, SurfaceId};
+use crate::geometry::{Aggregate, Hit, Ray, Shadow};
 use crate::material::{Interaction, Material};
 use crate::pattern::{Memory, Place};
 use crate::sample::Sampler;
@@ -142,7 +142,7 @@ impl Lit<'_> {
                 }
             }
             if let Some(mirror) = &leg.mirror {
-                fraction *= self.mirrored(mirror.surface);
+                fraction *= self.mirrored(self.scene.material(mirror.surface), mirror, &leg.ray, memory);
             }
         }
         if self.extinction != Vec3::ZERO {
@@ -176,13 +176,22 @@ impl Lit<'_> {
         }
     }
 
-    /// What a mirror leaves of the light that it relays.
-    fn mirrored(&self, surface: SurfaceId) -> Rgb {
-        self.scene
-            .surface(surface)
-            .material
-            .and_then(|id| self.scene.mirror(id))
-            .map_or(Rgb::ZERO, |mirror| mirror.reflectance())
+    /// What a mirror leaves of the light that it relays, under its patterns.
+    fn mirrored(&self, material: Option<&Material>, hit: &Hit, ray: &Ray, memory: &mut Memory) -> Rgb {
+        match material {
+            Some(Material::Mirror(mirror)) => mirror.reflectance(),
+            Some(Material::Dressed(id)) => {
+                let place = place(self.scene, hit, ray);
+                let mut sum = Rgb::ZERO;
+                for (part, shown) in self.scene.shown(*id, &place, memory) {
+                    if part > 0.0 {
+                        sum += self.mirrored(shown, hit, ray, memory) * part;
+                    }
+                }
+                sum * self.scene.tint(*id, &place, memory)
+            }
+            _ => Rgb::ZERO,
+        }
     }
 
     /// The fraction of a light's radiance that arrives by a ray which refracting solids bend: it counts if it comes to
@@ -218,7 +227,7 @@ impl Lit<'_> {
                 if !front {
                     return Rgb::ZERO;
                 }
-                fraction *= self.mirrored(hit.surface);
+                fraction *= self.mirrored(material, &hit, &ray, memory);
                 dir = Interaction::new(ray.dir, hit.normal).reflected();
                 next = mirrors.next();
             } else if next.is_none() && light.source() == SourceId::Surface(hit.surface) {

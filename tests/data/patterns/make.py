@@ -1,10 +1,11 @@
-"""Makes tiles.rad, the files beside it that tiles.rad names, and tiles.csv: what Radiance's rtrace shows of every tile.
+"""Makes tiles.rad, the files beside it that tiles.rad names, and tiles.csv: what Radiance's rtrace shows of every tile;
+the same of relay.rad, whose mirrors send light on, and of nested.rad, whose octrees Radiance's oconv makes.
 
 usage: make.py RADIANCE_BIN RADIANCE_LIB   (Python's standard library; "RADIANCE 6.0a")
 
 Every tile is a square of side 1 with a pattern, a texture or a material that functions or data decide, seen from above.
-Patterns lie on surfaces that shine, so that what is seen is the pattern itself; materials lie under a sun of 1e-3 degrees
-(others over one), so that direct light has no noise. Rays go through the centres of 4 x 4 pixels a tile.
+Patterns lie on surfaces that shine, so that what is seen is the pattern itself; materials lie between two suns of 1e-3
+degrees, so that direct light has no noise. Rays go from (4, 3, 9) through the centres of 6 x 6 pixels a tile.
 """
 
 import os
@@ -14,8 +15,9 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).parent
-PIXELS = 4
+PIXELS = 6
 COLUMNS = 8
+ROWS = 6
 
 SHINE = ["{0} light {0}_lit 0 0 3 1 1 1"]
 WHITE = ["{0} plastic {0}_lit 0 0 5 .9 .8 .7 0 0"]
@@ -24,7 +26,7 @@ WHITE = ["{0} plastic {0}_lit 0 0 5 .9 .8 .7 0 0"]
 TILES = [
     ("wave", ["void brightfunc {0} 2 wave tiles.cal 0 1 6.5"] + SHINE),
     ("grain", ["void brightfunc {0} 2 grain tiles.cal 0 2 .5 4.3"] + SHINE),
-    ("clouds", ["void brightfunc {0} 2 clouds tiles.cal 0 2 .4 3.1"] + SHINE),
+    ("clouds", ["void brightfunc {0} 2 clouds tiles.cal 0 2 .4 3.137"] + SHINE),
     ("checks", ["void brightfunc {0} 6 checks tiles.cal -s .7 -rz 20 0 3 3 .9 .1"] + SHINE),
     ("rings", ["void brightfunc {0} 10 rings tiles.cal -rx 40 -t .2 .3 .1 -i 1 0 1 2.5"] + SHINE),
     ("steps", ["void brightfunc {0} 2 steps tiles.cal 0 0"] + SHINE),
@@ -83,16 +85,43 @@ TILES = [
     ("ashik2", ["void ashik2 {0}_lit 4 along_x along_y 0 tiles.cal 0 8 .4 .3 .2 .1 .15 .2 20 60"]),
 ]
 
-# Those lit from below as well: what they let through.
-BELOW = {"transfunc", "transdata", "brtdfunc", "trans2"}
+# A floor that the sun lights, and what two mirrors send on of it: one under a pattern, one a mixture.
+RELAY = """void light sun 0 0 3 2e9 1.6e9 1.2e9
+sun source from_side 0 0 4 .7 .5 .6 1e-3
+void plastic grey 0 0 5 .5 .5 .5 0 0
+grey polygon floor 0 0 12 0 0 0 8 0 0 8 6 0 0 6 0
+void colorfunc hatched 8 wave .6 .5+.2*sin(3*Py) tiles.cal -rz 30 -rx 50 0 1 2.5
+hatched mirror behind 0 0 3 .8 .7 .6
+behind polygon left 0 0 12 -.5 0 .2 -.5 5.5 .2 -.5 5.5 2.2 -.5 0 2.2
+void mirror silver 0 0 3 .9 .9 .9
+void plastic black 0 0 5 0 0 0 0 0
+void mixfunc partly 6 silver black half_way tiles.cal -rz 10 0 0
+partly polygon front 0 0 12 0 -.3 .3 0 -.3 1.8 6 -.3 1.8 6 -.3 .3
+"""
 
-
-def primitive(text):
-    """`modifier type name` and arguments: those of the first count are strings, which may hold blanks nowhere."""
-    words = text.split()
-    if words[1] == "alias":
-        return " ".join(words)
-    return " ".join(words[:3]) + "\n" + " ".join(words[3:])
+# An octree, one that holds two instances of it, and a scene of three of those: patterns, textures, what has no material of
+# its own, materials of instances in the coordinates in which each is defined.
+INNER = """void brightfunc wave 2 wave tiles.cal 0 1 6.5
+wave light wave_lit 0 0 3 1 1 1
+wave_lit polygon left 0 0 12 0 0 0 .5 0 0 .5 1 0 0 1 0
+void texfunc bumps 4 bumps_x bumps_y 0 tiles.cal 0 1 .4
+bumps plastic white 0 0 5 .9 .8 .7 0 0
+white polygon right 0 0 12 .5 0 0 1 0 0 1 1 0 .5 1 0
+void polygon bare 0 0 12 .1 .1 .1 .4 .1 .1 .4 .4 .1 .1 .4 .1
+"""
+MIDDLE = """void instance first 5 inner.oct -s 2 -rz 10 0 0
+void brightfunc checks 2 checks tiles.cal 0 3 3 .9 .1
+checks light checks_lit 0 0 3 1 1 1
+checks_lit instance second 5 inner.oct -t 2.5 0 0 0 0
+"""
+NESTED = """void light sun 0 0 3 2e9 1.6e9 1.2e9
+sun source from_above 0 0 4 .3 .5 1 1e-3
+void instance a 5 middle.oct -t .5 .5 0 0 0
+void instance b 9 middle.oct -s 1.2 -rz 25 -t 3.5 2.5 .3 0 0
+void colorfunc colours 4 red_part green_part blue_part tiles.cal 0 0
+colours light colours_lit 0 0 3 1 1 1
+colours_lit instance c 9 middle.oct -s .7 -ry 20 -t .4 3.2 0 0 0
+"""
 
 
 def scene():
@@ -125,25 +154,36 @@ def main(binaries, library):
     pathlib.Path("tiles.rad").write_text(scene())
     pathlib.Path("small.hdr").write_bytes(picture())
     pathlib.Path("text.txt").write_text("AoL\nL A\noo\n")
-    rows = -(-len(TILES) // COLUMNS)
-    octree = subprocess.run(["oconv", "tiles.rad"], check=True, capture_output=True).stdout
+    for name, text in [("inner", INNER), ("middle", MIDDLE)]:
+        frozen = subprocess.run(["oconv", "-f", "-"], check=True, capture_output=True, input=text.encode()).stdout
+        pathlib.Path(f"{name}.oct").write_bytes(frozen)
+    pathlib.Path("nested.rad").write_text(NESTED)
+    shown("tiles", [name for name, _ in TILES])
+    pathlib.Path("relay.rad").write_text(RELAY)
+    shown("relay", [f"cell {number}" for number in range(COLUMNS * ROWS)], relays=1)
+    shown("nested", [f"cell {number}" for number in range(COLUMNS * ROWS)])
+
+
+def shown(scene, names, relays=0):
+    """Writes what rtrace shows of a scene."""
     rays = "".join(
-        f"{(x + .5) / PIXELS} {(y + .5) / PIXELS} 10 0 0 -1\n"
-        for y in range(rows * PIXELS) for x in range(COLUMNS * PIXELS))
-    path = pathlib.Path("tiles.oct")
-    path.write_bytes(octree)
-    options = "-h -ab 0 -lr 1 -lw 2 -st 0 -dt 0 -dc 1 -dj 0 -ds 0 -dr 0".split()
-    found = subprocess.run(["rtrace", *options, "tiles.oct"], check=True, capture_output=True, input=rays, text=True)
-    path.unlink()
+        f"4 3 9 {(x + .5) / PIXELS - 4} {(y + .5) / PIXELS - 3} -9\n"
+        for y in range(ROWS * PIXELS) for x in range(COLUMNS * PIXELS))
+    octree = pathlib.Path("all.oct")
+    octree.write_bytes(subprocess.run(["oconv", f"{scene}.rad"], check=True, capture_output=True).stdout)
+    options = "-h -ab 0 -lr 1 -lw 2 -st 0 -dt 0 -dc 1 -dj 0 -ds 0".split() + ["-dr", str(relays)]
+    found = subprocess.run(["rtrace", *options, octree], check=True, capture_output=True, input=rays, text=True)
+    octree.unlink()
     values = [line.split() for line in found.stdout.splitlines() if line.strip()]
-    assert len(values) == rows * COLUMNS * PIXELS * PIXELS, (len(values), found.stderr)
-    with open("tiles.csv", "w") as file:
+    assert len(values) == ROWS * COLUMNS * PIXELS * PIXELS, (len(values), found.stderr)
+    with open(f"{scene}.csv", "w") as file:
+        # Pixels are counted from the lower left.
         file.write("tile,x,y,red,green,blue\n")
         for index, value in enumerate(values):
             x, y = index % (COLUMNS * PIXELS), index // (COLUMNS * PIXELS)
             tile = y // PIXELS * COLUMNS + x // PIXELS
-            if tile < len(TILES):
-                file.write(f"{TILES[tile][0]},{x},{y},{','.join(value)}\n")
+            if tile < len(names):
+                file.write(f"{names[tile]},{x},{y},{','.join(value)}\n")
     print(found.stderr, end="")
 
 

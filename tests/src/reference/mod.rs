@@ -5,7 +5,7 @@
 //! extent), -pj 1 (pixels over theirs), -lr 12 -lw 1e-5 (where paths end), -aa 0 (no irradiance cache). Ours are the
 //! same by default but for the ends of paths, which are set here.
 
-mod tables;
+pub(crate) mod tables;
 
 use std::path::{Path, PathBuf};
 

@@ -228,3 +228,65 @@ fn mirrors_relay_once_unless_told_otherwise() {
     scene.set_relays(2);
     assert_eq!(relays(&scene), [0, 1, 1, 2, 2]);
 }
+
+/// Of a scene in memory beside files, what it is or the errors.
+fn build_with(text: &str, files: &MemoryFiles) -> Result<Scene, String> {
+    let document = rad::read(&[Source::new("test.rad", text)], files, &Options::default()).unwrap();
+    Scene::from_rad_with(&document, files)
+        .map_err(|errors| errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
+}
+
+/// A ball of radius 1/2 at (1, 0, 0), twice the size and further along x with every instance around it.
+#[test]
+fn instances_within_instances_are_placed_and_covered() {
+    let files = MemoryFiles::new()
+        .with("ball.rad", "void plastic red 0 0 5 .5 0 0 0 0\nred sphere ball 0 0 4 1 0 0 .5\nvoid sphere bare 0 0 4 1 3 0 .5")
+        .with("pair.rad", "void plastic blue 0 0 5 0 0 .5 0 0\nvoid instance i 6 ball.rad -s 2 -t 1 0 0 0 0\nblue instance j 5 ball.rad -t 0 0 20 0 0");
+    let text = "void plastic green 0 0 5 0 .5 0 0 0
+        void instance outer 6 pair.rad -s 2 -t 1 0 0 0 0
+        green instance over 5 pair.rad -t 0 100 0 0 0";
+    let scene = build_with(text, &files).unwrap();
+    let aggregate = scene.aggregate();
+    let color = |x: f64, y: f64, z: f64| {
+        let ray = Ray::new(DVec3::new(x, y, z + 9.0), -DVec3::Z).up_to(12.0);
+        let hit = aggregate.closest(&ray)?;
+        let name = scene.name(scene.surface(hit.surface).name).to_owned();
+        let Some(Material::Plastic(plastic)) = scene.material(hit.surface) else { return Some((name, hit.t, None)) };
+        Some((name, hit.t, Some(format!("{plastic:?}"))))
+    };
+    let of = |scene: &Scene, index: usize| format!("{:?}", scene.materials[index]);
+    let (name, t, found) = color(7.0, 0.0, 0.0).unwrap();
+    // At 2 (2 x + 1) + 1 = 7 with a radius of 2.
+    assert_eq!((name.as_str(), t), ("ball", 7.0));
+    let materials: Vec<String> = (0..scene.materials.len()).map(|index| of(&scene, index)).collect();
+    let named = |found: Option<String>| materials.iter().position(|text| text.contains(&found.clone().unwrap()));
+    let red = named(found);
+    // The inner instance's material covers what it places, the outer one's covers all.
+    let blue = named(color(3.0, 0.0, 40.0).unwrap().2);
+    let green = named(color(3.0, 100.0, 0.0).unwrap().2);
+    assert_eq!(green, named(color(1.0, 100.0, 20.0).unwrap().2));
+    assert!(red.is_some() && blue.is_some() && green.is_some());
+    assert!(red != blue && blue != green && green != red);
+    // What has no material is nothing by itself and takes the material of an instance.
+    assert_eq!(color(7.0, 12.0, 0.0).map(|(name, _, material)| (name, material)), Some(("bare".to_owned(), None)));
+    assert_eq!(named(color(3.0, 106.0, 0.0).unwrap().2), green);
+    // The numbers of two places never meet.
+    assert_eq!(color(5.0, 50.0, 0.0), None);
+}
+
+#[test]
+fn an_octree_that_holds_itself_is_an_error() {
+    let files = MemoryFiles::new()
+        .with("a.rad", "void instance x 1 b.rad 0 0")
+        .with("b.rad", "void instance y 1 a.rad 0 0");
+    let error = build_with("void instance i 1 a.rad 0 0", &files).unwrap_err();
+    assert!(error.contains("a.rad -> b.rad -> a.rad: an octree cannot hold an instance of itself"), "{error}");
+    let mut files = MemoryFiles::new().with("d9.rad", "");
+    for depth in 0..9 {
+        let next = depth + 1;
+        files = files.with(format!("d{depth}.rad"), format!("void instance i 1 d{next}.rad 0 0\n").repeat(2));
+    }
+    assert!(build_with("void instance i 1 d2.rad 0 0", &files).is_ok());
+    let error = build_with("void instance i 1 d1.rad 0 0", &files).unwrap_err();
+    assert!(error.contains("more than 8 deep"), "{error}");
+}
