@@ -27,6 +27,12 @@ pub struct Functions {
 }
 
 impl Functions {
+    /// How many texts were read.
+    #[must_use]
+    pub fn texts(&self) -> usize {
+        self.texts.len()
+    }
+
     /// The library alone, and for a generator the constant `PI`; for rays also the definitions that scenes take for
     /// granted (Radiance's `rayinit.cal`).
     #[must_use]

@@ -63,6 +63,12 @@ pub struct Font {
 }
 
 impl Font {
+    /// Bytes that its outlines take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.glyphs.iter().flatten().map(|glyph| size_of_val(&glyph.outline[..])).sum()
+    }
+
     /// Reads a font file: for each character its code, the number of vertices of its outline, and their coordinates; `#`
     /// starts a comment.
     ///

@@ -45,6 +45,12 @@ impl Library {
         self.files.iter().any(|known| known == file)
     }
 
+    /// How many texts of functions it holds, that of the standard definitions included.
+    #[must_use]
+    pub fn texts(&self) -> usize {
+        self.functions.texts()
+    }
+
     /// Reads a function file.
     ///
     /// # Errors

@@ -127,6 +127,12 @@ impl Table {
         Some(Self { axes: vec![axis(height), axis(width)], values, channels: 3 })
     }
 
+    /// Bytes that its values take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.values[..])
+    }
+
     /// How many dimensions it has.
     #[must_use]
     pub fn dimensions(&self) -> usize {

@@ -140,6 +140,14 @@ impl Scene {
         }
     }
 
+    /// The material under a dress; a mixture has none that is its own.
+    pub(super) fn base(&self, id: DressId) -> Option<MaterialId> {
+        match &self.dresses[id.index()].base {
+            Base::Material(base) => Some(*base),
+            Base::Mixture { .. } => None,
+        }
+    }
+
     /// The emitter under a dress; a mixture is none.
     #[must_use]
     pub fn emitter(&self, material: MaterialId) -> Option<(&crate::material::Emitter, Option<DressId>)> {

@@ -5,6 +5,7 @@ mod dress;
 mod far;
 mod from_rad;
 mod group;
+mod holdings;
 mod light;
 mod names;
 mod program;
@@ -23,6 +24,7 @@ use crate::rad;
 
 pub use dress::Worn;
 pub use far::{FarId, FarSource};
+pub use holdings::Holdings;
 pub use light::{Leg, Light, LightSample};
 pub use names::NameId;
 use names::Names;
@@ -68,6 +70,8 @@ pub struct Scene {
     programs: Vec<program::Program>,
     /// The functions of those; absent where there are none.
     library: Option<Library>,
+    /// Bytes of the data, pictures and fonts that its primitives name.
+    table_bytes: usize,
 }
 
 impl Scene {
@@ -170,12 +174,12 @@ impl Scene {
         self.lights.extend(images);
     }
 
-    /// The mirror that relays lights in a material.
+    /// The mirror that relays lights in a material; one in a mixture does not, as in Radiance.
     #[must_use]
     pub fn mirror(&self, material: MaterialId) -> Option<&Mirror> {
         match &self.materials[material.index()] {
             Material::Mirror(mirror) => Some(mirror),
-            Material::Dressed(id) => self.bases(*id).into_iter().flatten().find_map(|base| self.mirror(base)),
+            Material::Dressed(id) => self.base(*id).and_then(|base| self.mirror(base)),
             _ => None,
         }
     }

@@ -182,13 +182,8 @@ impl Lit<'_> {
             Some(Material::Mirror(mirror)) => mirror.reflectance(),
             Some(Material::Dressed(id)) => {
                 let place = place(self.scene, hit, ray);
-                let mut sum = Rgb::ZERO;
-                for (part, shown) in self.scene.shown(*id, &place, memory) {
-                    if part > 0.0 {
-                        sum += self.mirrored(shown, hit, ray, memory) * part;
-                    }
-                }
-                sum * self.scene.tint(*id, &place, memory)
+                let [(_, shown), _] = self.scene.shown(*id, &place, memory);
+                self.mirrored(shown, hit, ray, memory) * self.scene.tint(*id, &place, memory)
             }
             _ => Rgb::ZERO,
         }

@@ -85,14 +85,15 @@ TILES = [
     ("ashik2", ["void ashik2 {0}_lit 4 along_x along_y 0 tiles.cal 0 8 .4 .3 .2 .1 .15 .2 20 60"]),
 ]
 
-# A floor that the sun lights, and what two mirrors send on of it: one under a pattern, one a mixture.
+# A floor that the sun lights, and what two mirrors send on of it: one under a pattern; the other is a
+# mixture, which sends nothing on.
 RELAY = """void light sun 0 0 3 2e9 1.6e9 1.2e9
 sun source from_side 0 0 4 .7 .5 .6 1e-3
 void plastic grey 0 0 5 .5 .5 .5 0 0
 grey polygon floor 0 0 12 0 0 0 8 0 0 8 6 0 0 6 0
 void colorfunc hatched 8 wave .6 .5+.2*sin(3*Py) tiles.cal -rz 30 -rx 50 0 1 2.5
 hatched mirror behind 0 0 3 .8 .7 .6
-behind polygon left 0 0 12 -.5 0 .2 -.5 5.5 .2 -.5 5.5 2.2 -.5 0 2.2
+behind polygon left 0 0 12 -.5 0 .2 -.5 5.47 .2 -.5 5.47 2.2 -.5 0 2.2
 void mirror silver 0 0 3 .9 .9 .9
 void plastic black 0 0 5 0 0 0 0 0
 void mixfunc partly 6 silver black half_way tiles.cal -rz 10 0 0

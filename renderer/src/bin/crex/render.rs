@@ -278,7 +278,10 @@ fn write_ran(path: &Path, request: &Request, account: &Account) -> Result<(), Fa
 
 fn write_stats(args: &Args, prepared: &Prepared, stats: Stats, clock: &MonotonicClock) -> Result<(), Failure> {
     let Some(file) = &args.stats else { return Ok(()) };
-    let stats = stats.with_scene(prepared.scene_hash(), prepared.request.modulation()).with_wall_s(clock.now_s());
+    let stats = stats
+        .with_scene(prepared.scene_hash(), prepared.request.modulation())
+        .with_holdings(prepared.holdings())
+        .with_wall_s(clock.now_s());
     let text = serde_json::to_string_pretty(&stats).map_err(|error| Failure::Cannot(error.to_string()))?;
     // Under a time limit nobody waits for the disk.
     let write = if args.time.is_some() { AtomicFile::write_all_unsynced } else { AtomicFile::write_all };

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use renderer::component::PerComponent;
 use renderer::crex::Program;
 use renderer::render::{Account, Settings};
+use renderer::scene::Holdings;
 use renderer::schedule::{Skipped, StageRow, executed};
 use renderer::work::WorkReport;
 use serde::Serialize;
@@ -32,6 +33,9 @@ pub(crate) struct Stats {
     left: Counts,
     /// A hash of what the scene was made from.
     scene: String,
+    /// What the scene holds in memory; absent where several machines had it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    holds: Option<Holdings>,
     /// What `{ }` heeded: the hash of the map, and by which rule.
     modulation: String,
     /// What a clock decided, under a time limit.
@@ -89,6 +93,7 @@ impl Stats {
             left: counts(&account.left),
             scene: String::new(),
             modulation: String::new(),
+            holds: None,
             timed: None,
             stages: std::iter::once(primary).chain(rows).collect(),
         }
@@ -97,6 +102,11 @@ impl Stats {
     /// The same of a scene, and of what `{ }` heeded.
     pub(crate) fn with_scene(self, scene: String, modulation: String) -> Self {
         Self { scene, modulation, ..self }
+    }
+
+    /// The same with what the scene holds.
+    pub(crate) fn with_holdings(self, holds: Holdings) -> Self {
+        Self { holds: Some(holds), ..self }
     }
 
     /// The same of a run under a time limit, in seconds, or of one repeated.

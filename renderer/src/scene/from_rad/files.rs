@@ -22,6 +22,12 @@ impl<'a> Shelf<'a> {
         Self { files, tables: HashMap::new(), pictures: HashMap::new(), fonts: HashMap::new() }
     }
 
+    /// Bytes of what is kept.
+    pub(super) fn bytes(&self) -> usize {
+        let tables = self.tables.values().chain(self.pictures.values()).map(|table| table.bytes());
+        tables.chain(self.fonts.values().map(|font| font.bytes())).sum()
+    }
+
     /// What finds them.
     pub(super) fn files(&self) -> &'a dyn Files {
         self.files

@@ -165,9 +165,10 @@ impl Builder<'_> {
                 inner.add_surface(index, primitive);
             }
         }
-        let Builder { reporter, scene, groups: known, .. } = inner;
+        let Builder { reporter, scene, groups: known, materials, .. } = inner;
         let Reporter { errors, warnings, .. } = reporter;
         (self.scene, self.groups) = (scene, known);
+        self.scene.table_bytes += materials.shelf.bytes();
         let used = std::mem::replace(&mut self.groups.taken, taken);
         let mut surfaces = std::mem::replace(&mut self.scene.surfaces, outside);
         let mut groups = std::mem::replace(&mut self.scene.groups, groups);
@@ -220,6 +221,7 @@ impl Builder<'_> {
             content.triangles.push(triangle.vertices);
             content.materials.push(triangle.material.and_then(|index| built(index, &mut self.scene)));
         }
+        self.scene.table_bytes += materials.shelf.bytes();
         let errors = reporter.errors;
         if !errors.is_empty() {
             return self.told(errors);

@@ -85,7 +85,7 @@ impl Scene {
             }
         }
         builder.cut();
-        let Builder { reporter, mut scene, .. } = builder;
+        let Builder { reporter, mut scene, materials, .. } = builder;
         if !reporter.errors.is_empty() {
             return Err(reporter.errors);
         }
@@ -94,6 +94,7 @@ impl Scene {
             let message = format!("{} more warnings like these", reporter.unlisted_warnings);
             scene.warnings.push(rad::Error::of_file("scene", message));
         }
+        scene.table_bytes += materials.shelf.bytes();
         scene.set_relays(DEFAULT_RELAYS);
         Ok(scene)
     }

@@ -241,9 +241,9 @@ fn build_with(text: &str, files: &MemoryFiles) -> Result<Scene, String> {
 fn instances_within_instances_are_placed_and_covered() {
     let files = MemoryFiles::new()
         .with("ball.rad", "void plastic red 0 0 5 .5 0 0 0 0\nred sphere ball 0 0 4 1 0 0 .5\nvoid sphere bare 0 0 4 1 3 0 .5")
-        .with("pair.rad", "void plastic blue 0 0 5 0 0 .5 0 0\nvoid instance i 6 ball.rad -s 2 -t 1 0 0 0 0\nblue instance j 5 ball.rad -t 0 0 20 0 0");
+        .with("pair.rad", "void plastic blue 0 0 5 0 0 .5 0 0\nvoid instance i 7 ball.rad -s 2 -t 1 0 0 0 0\nblue instance j 5 ball.rad -t 0 0 20 0 0");
     let text = "void plastic green 0 0 5 0 .5 0 0 0
-        void instance outer 6 pair.rad -s 2 -t 1 0 0 0 0
+        void instance outer 7 pair.rad -s 2 -t 1 0 0 0 0
         green instance over 5 pair.rad -t 0 100 0 0 0";
     let scene = build_with(text, &files).unwrap();
     let aggregate = scene.aggregate();
@@ -276,9 +276,8 @@ fn instances_within_instances_are_placed_and_covered() {
 
 #[test]
 fn an_octree_that_holds_itself_is_an_error() {
-    let files = MemoryFiles::new()
-        .with("a.rad", "void instance x 1 b.rad 0 0")
-        .with("b.rad", "void instance y 1 a.rad 0 0");
+    let files =
+        MemoryFiles::new().with("a.rad", "void instance x 1 b.rad 0 0").with("b.rad", "void instance y 1 a.rad 0 0");
     let error = build_with("void instance i 1 a.rad 0 0", &files).unwrap_err();
     assert!(error.contains("a.rad -> b.rad -> a.rad: an octree cannot hold an instance of itself"), "{error}");
     let mut files = MemoryFiles::new().with("d9.rad", "");
@@ -289,4 +288,36 @@ fn an_octree_that_holds_itself_is_an_error() {
     assert!(build_with("void instance i 1 d2.rad 0 0", &files).is_ok());
     let error = build_with("void instance i 1 d1.rad 0 0", &files).unwrap_err();
     assert!(error.contains("more than 8 deep"), "{error}");
+}
+
+/// What a scene does not use is neither read nor held; what it uses is held once.
+#[test]
+fn scenes_hold_what_they_use() {
+    use crate::scene::Holdings;
+    // None of the files that unused primitives name is there.
+    let plain = "void light lamp 0 0 3 1 1 1
+        void brightfunc dots 2 dots none.cal 0 0
+        void colorpict photo 7 red green blue none.hdr none.cal u v 0 0
+        dots plasfunc strange 2 f none.cal 0 4 1 1 1 .5
+        void antimatter hole 1 grey 0 0
+        void plastic grey 0 0 5 .5 .5 .5 0 0
+        grey sphere ball 0 0 4 0 0 0 1
+        lamp sphere l 0 0 4 0 0 3 .1";
+    let expected = Holdings { surfaces: 2, materials: 2, lights: 1, ..Holdings::default() };
+    assert_eq!(build(plain).unwrap().holdings(), expected);
+    let files = MemoryFiles::new()
+        .with("ramp.dat", "1 0 1 3 .2 .5 .9")
+        .with("pair.rad", "void plastic red 0 0 5 .5 0 0 0 0\nred sphere a 0 0 4 0 0 0 1\nred sphere b 0 0 4 3 0 0 1")
+        .with("two.rad", "void instance i 1 pair.rad 0 0\nvoid instance j 5 pair.rad -t 0 9 0 0 0");
+    let dressed = "void brightdata ramp 4 noop ramp.dat . Px 0 0
+        ramp plastic grey 0 0 5 .5 .5 .5 0 0
+        ramp plastic dark 0 0 5 .1 .1 .1 0 0
+        grey sphere ball 0 0 4 0 0 0 1
+        dark sphere other 0 0 4 5 0 0 1
+        void instance first 1 two.rad 0 0
+        void instance second 5 two.rad -t 50 0 0 0 0";
+    let holds = build_with(dressed, &files).unwrap().holdings();
+    // The numbers of one table; two instances of a file that holds two of another with two spheres.
+    assert_eq!((holds.surfaces, holds.dresses, holds.table_bytes), (4, 2, 12));
+    assert_eq!((holds.function_texts > 0, holds.instances, holds.instanced), (true, 2, 4));
 }

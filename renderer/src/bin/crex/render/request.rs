@@ -10,7 +10,7 @@ use renderer::importance::map::ImportanceMap;
 use renderer::picture::{Input, Provenance, grey};
 use renderer::rad::RifView;
 use renderer::render::{Account, RenderError, Renderer, Rendering, Settings, Snapshot};
-use renderer::scene::{Scene, View};
+use renderer::scene::{Holdings, Scene, View};
 use renderer::schedule::MonotonicClock;
 use renderer::transport::Limits;
 use stimuli::Sha256;
@@ -125,6 +125,11 @@ pub(crate) fn prepare_scene(
 }
 
 impl Prepared {
+    /// What the scene holds.
+    pub(crate) fn holdings(&self) -> Holdings {
+        self.scene.holdings()
+    }
+
     /// The scene.
     pub(crate) fn scene(&self) -> &Scene {
         &self.scene
