@@ -16,6 +16,7 @@ pub struct Placed(
     Arc<Place>,
 );
 
+#[derive(Clone)]
 struct Place {
     group: Arc<Aggregate>,
     to_scene: Similarity,
@@ -67,7 +68,7 @@ impl Placed {
     /// The same set with other numbers, the first being `first`.
     #[must_use]
     pub fn numbered(self, first: u32) -> Self {
-        Self { first, ..self }
+        Self(Arc::new(Place { first, ..Arc::unwrap_or_clone(self.0) }))
     }
 
     /// The nearest hit beyond `t_min`, in the group's coordinates but for its distance.
