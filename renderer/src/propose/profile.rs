@@ -99,8 +99,8 @@ impl<'a> Profile<'a> {
         let components = question.scene.components(question.settings.limits.glossy_threshold);
         let pilot = render(&question, &settings, &Levels::full(components).crex())?;
         let pilot_s = pilot.primary.seconds + pilot.stages.iter().map(|row| row.report.seconds).sum::<f64>();
-        let times = (seconds - pilot_s) / FULL_ONES / pilot_s;
-        // Pixels go with the square of the side. Not a number, if nothing is known of either, is too small as well.
+        let times = ((seconds - pilot_s) / FULL_ONES / pilot_s).max(0.0);
+        // Pixels go with the square of the side.
         let longest = (PILOT * times.sqrt()).min(LONGEST);
         if longest >= SHORTEST { Self::of_size(question, longest, 1).map(Some) } else { Ok(None) }
     }
