@@ -123,10 +123,11 @@ def table3(args):
 def figures(args):
     print("| figure | bound s | of the whole | wall s | rounds | executed | predicted s | true s |\n|---|---|---|---|---|---|---|---|")
     for name, scene, crex, parts in FIGURES:
-        whole = render(args, f"{name}_whole", scene, crex, ["--spp", "1"], (args.size, args.size))["wall_s"]
+        whole = render(args, f"{name}_whole", scene, crex, ["--spp", str(args.spp)], (args.size, args.size))["wall_s"]
         for part in parts:
             bound = part * whole
-            stats = render(args, f"{name}_{part:.3f}", scene, crex, ["--time", f"{bound:.3f}"], (args.size, args.size))
+            more = ["--spp", str(args.spp), "--time", f"{bound:.3f}"]
+            stats = render(args, f"{name}_{part:.3f}", scene, crex, more, (args.size, args.size))
             ran = [row for row in stats["stages"] if row["predicted_s"] and not row["skipped"]]
             predicted, true = (sum(row[key] for row in ran) for key in ("predicted_s", "seconds"))
             print(f"| {name} | {bound:.2f} | {part:.3f} | {stats['wall_s']:.2f} | {len(stats['timed']['rounds'])} | "
@@ -140,7 +141,7 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--size", type=int, default=None)
     parser.add_argument("--frames", type=int, default=180)
-    parser.add_argument("--spp", type=int, default=4, help="samples of table3: tasks of a few milliseconds measure the clock")
+    parser.add_argument("--spp", type=int, default=4, help="samples a pixel: tasks of a few milliseconds measure the clock")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--time", type=float, default=10.0, help="seconds for each picture of table3: enough for all tasks")
     args = parser.parse_args()
