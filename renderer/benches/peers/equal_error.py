@@ -1,11 +1,13 @@
 """CPU seconds to a given error of crex and of other renderers on one scene, in one run.
 
     pip install pyradiance mitsuba numpy OpenEXR      (in a virtual environment outside the project)
-    python renderer/benches/peers/equal_error.py CREX SCENE.rad SCENE.vf REFERENCE.exr [crex,rpict,mitsuba]
+    python renderer/benches/peers/equal_error.py CREX SCENE.rad SCENE.vf REFERENCE.exr [crex,rpict,mitsuba,cycles]
+
+For Cycles, CYCLES_PYTHON names a Python that has bpy (see `blender.py`).
 
 The scene must hold polygons of plastic without gloss and `light`s, so that all solve the same problem: direct light and
 5 diffuse bounces, box filter. Error: sqrt(mean((x - r)^2 / (r^2 + .01 mean(r)^2))) on luminance. CPU seconds are user and
-system time of the process on one thread; crex and rpict with all start-up, Mitsuba's rendering alone. Each setting is run once; times
+system time of the process on one thread; crex and rpict with all start-up, Mitsuba's and Cycles' rendering alone. Each setting is run once; times
 to 5, 2 and 1 % are read between points by error ~ time^slope, and beyond the last by time^-1/2 (marked ~). What lies on a floor of
 bias above the error is marked `never`.
 """
@@ -28,7 +30,8 @@ SIZE = 256
 
 def exr(path):
     channels = OpenEXR.File(str(path)).parts[0].channels
-    rgb = channels["RGB"].pixels if "RGB" in channels else np.stack([channels[c].pixels for c in "RGB"], -1)
+    whole = channels.get("RGB") or channels.get("RGBA")
+    rgb = whole.pixels[..., :3] if whole else np.stack([channels[c].pixels for c in "RGB"], -1)
     return np.asarray(rgb, float)
 
 
@@ -149,6 +152,15 @@ def mitsuba_points(scene, view, counts):
             print(f"mitsuba {variant}: {str(problem).splitlines()[0]}", file=sys.stderr)
 
 
+def cycles(scene, view, samples, *more):
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder, "a.exr")
+        python = os.environ.get("CYCLES_PYTHON", sys.executable)
+        words = [python, Path(__file__).with_name("blender.py"), scene, view, SIZE, out, samples, *more]
+        told, _ = run([*map(str, words)])
+        return exr(out), float(re.search(rb"CPU seconds: (\S+)", told)[1])
+
+
 def time_to(points, goal):
     points = sorted(points)
     for (t0, e0), (t1, e1) in zip(points, points[1:]):
@@ -189,6 +201,11 @@ def main():
         for index, (variant, samples, picture, seconds) in enumerate(mitsuba_points(scene, view, (16, 64))):
             if index > 0:  # the first compiles
                 add(f"Mitsuba {variant}", f"{samples} spp", picture, seconds)
+    if "cycles" in who:
+        for samples in (16, 64):
+            add("Cycles", f"{samples} spp", *cycles(scene, view, samples))
+        for samples in (4, 16):
+            add("Cycles, denoised", f"{samples} spp", *cycles(scene, view, samples, "denoised"))
     print("\n| renderer | CPU s to 5 % | to 2 % | to 1 % |\n|---|---|---|---|")
     for name, points in curves.items():
         print(f"| {name} | " + " | ".join(time_to(points, goal) for goal in (0.05, 0.02, 0.01)) + " |")

@@ -127,16 +127,13 @@ impl Aggregate {
             let build = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
             obvhs::bvh2::builder::build_bvh2(&boxes, build, &mut Duration::default())
         };
-        let pairs: Vec<Pair> = bvh
-            .nodes
-            .iter()
-            .map(|node| {
-                let Aabb { min: low, max: high } = *node.aabb();
-                let is_leaf = node.prim_count > 0;
-                let first = if is_leaf { bvh.primitive_indices[node.first_index as usize] } else { node.first_index };
-                Pair { low, high, first, is_leaf }
-            })
-            .collect();
+        let pair = |index: u32| {
+            let node = &bvh.nodes[index as usize];
+            let Aabb { min: low, max: high } = *node.aabb();
+            let is_leaf = node.prim_count > 0;
+            let first = if is_leaf { bvh.primitive_indices[node.first_index as usize] } else { node.first_index };
+            Pair { low, high, first, is_leaf }
+        };
         let parts = |slot: u32, found: &mut Vec<Part>| {
             let item = slots[inner[slot as usize]].as_ref();
             let Some(vertices) = item.and_then(|it| it.shape.vertices()).filter(|it| it.len() <= MOST_VERTICES) else {
@@ -144,7 +141,8 @@ impl Aggregate {
             };
             found.extend(fan(slot, vertices.iter().map(|&vertex| ((vertex - centre) / half_extent).as_vec3())));
         };
-        let (bvh, order) = widen(&pairs, level, parts);
+        let root = (!bvh.nodes.is_empty()).then(|| pair(0));
+        let (bvh, order) = widen(root, pair, level, parts);
         let order = order.into_iter().map(|at| inner[at as usize]).chain(outliers);
         let items: Vec<Item> = order.filter_map(|index| slots[index].take()).collect();
         let has = |passage| items.iter().any(|item| item.passage == passage);

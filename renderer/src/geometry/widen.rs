@@ -48,13 +48,18 @@ struct Branch {
     cost: [f32; WIDTH],
 }
 
-/// Widens a hierarchy whose root is its first node; `parts` adds the triangles that a shape is made of, or none if it is to be
-/// alone. Also returns the shapes in their new order, by which the result names them.
-pub(super) fn widen(pairs: &[Pair], level: Level, parts: impl Fn(u32, &mut Vec<Part>)) -> (Wide, Vec<u32>) {
+/// Widens the hierarchy below `root`; `pair` tells the others by their numbers, and `parts` adds the triangles that a shape is made
+/// of, or none if it is to be alone. Also returns the shapes in their new order, by which the result names them.
+pub(super) fn widen(
+    root: Option<Pair>,
+    pair: impl Fn(u32) -> Pair,
+    level: Level,
+    parts: impl Fn(u32, &mut Vec<Part>),
+) -> (Wide, Vec<u32>) {
     let mut wide = Wide { level, ..Wide::default() };
     let mut order = Vec::new();
-    let Some(&root) = pairs.first() else { return (wide, order) };
-    let mut tree = Tree { pairs, parts, found: Vec::new(), waiting: Vec::new() };
+    let Some(root) = root else { return (wide, order) };
+    let mut tree = Tree { pair, parts, found: Vec::new(), waiting: Vec::new() };
     let branches = tree.branches(root);
     // Depth first, so that what is near in space is near in memory. (branch, the link to it, boxes that can wait when it is come to)
     let mut todo = vec![(0, None, 0)];
@@ -123,41 +128,41 @@ fn share(branches: &[Branch], [a, b]: [u32; 2], boxes: usize) -> (f32, usize) {
     costs.min_by(|x, y| x.0.total_cmp(&y.0)).unwrap_or((f32::INFINITY, 1))
 }
 
-struct Tree<'a, T> {
-    pairs: &'a [Pair],
+struct Tree<P, T> {
+    pair: P,
     parts: T,
     /// What was last found to fit into a block.
     found: Vec<Part>,
     waiting: Vec<Pair>,
 }
 
-impl<T: Fn(u32, &mut Vec<Part>)> Tree<'_, T> {
+impl<P: Fn(u32) -> Pair, T: Fn(u32, &mut Vec<Part>)> Tree<P, T> {
     fn below(&self, parent: &Pair) -> [Pair; 2] {
-        [self.pairs[parent.first as usize], self.pairs[parent.first as usize + 1]]
+        [(self.pair)(parent.first), (self.pair)(parent.first + 1)]
+    }
+
+    fn branch(&mut self, pair: Pair) -> Branch {
+        let kind = if self.fits(pair) {
+            Kind::Block
+        } else if pair.is_leaf {
+            Kind::Single
+        } else {
+            Kind::Inner([0; 2])
+        };
+        Branch { pair, kind, cost: [pair.half_area(); WIDTH] }
     }
 
     /// The root and all below it down to what fits into blocks, each before its children.
     fn branches(&mut self, root: Pair) -> Vec<Branch> {
-        let pairs = self.pairs;
-        let mut branches = Vec::new();
-        let mut add = |branches: &mut Vec<Branch>, pair: Pair| {
-            let kind = if self.fits(pair) {
-                Kind::Block
-            } else if pair.is_leaf {
-                Kind::Single
-            } else {
-                Kind::Inner([0; 2])
-            };
-            branches.push(Branch { pair, kind, cost: [pair.half_area(); WIDTH] });
-        };
-        add(&mut branches, root);
+        let mut branches = vec![self.branch(root)];
         let mut next = 0;
         while next < branches.len() {
             let Branch { pair, kind, .. } = branches[next];
             if let Kind::Inner(_) = kind {
                 let first = branches.len() as u32;
-                add(&mut branches, pairs[pair.first as usize]);
-                add(&mut branches, pairs[pair.first as usize + 1]);
+                for below in self.below(&pair) {
+                    branches.push(self.branch(below));
+                }
                 branches[next].kind = Kind::Inner([first, first + 1]);
             }
             next += 1;
