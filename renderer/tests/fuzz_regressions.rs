@@ -48,6 +48,11 @@ fn meshes() {
 }
 
 #[test]
+fn objects() {
+    replay("obj", readers::obj);
+}
+
+#[test]
 fn crexes() {
     replay("crex", readers::crex);
 }

@@ -102,6 +102,22 @@ pub fn mesh(data: &[u8]) {
     }
 }
 
+/// A Wavefront object: read, and looked at as a mesh of a scene.
+pub fn obj(data: &[u8]) {
+    let source = Source::new("any.obj", data);
+    let Ok(obj) = rad::read_obj(&source) else { return };
+    for face in &obj.faces {
+        assert!(face.vertices.len() >= 3 && face.material.is_none_or(|material| material < obj.materials.len()));
+        assert!(face.vertices.iter().all(|&vertex| (vertex as usize) < obj.vertices.len()));
+    }
+    let files = MemoryFiles::new().with("any.obj", data);
+    let text = "void plastic m 0 0 5 .5 .5 .5 .1 .1\nm mesh any 1 any.obj 0 0\nvoid light l 0 0 3 9 9 9\nl sphere s 0 0 4 0 0 9 1\n";
+    let Ok(document) = rad::read(&[Source::new("scene.rad", text)], &files, &Options::default()) else { return };
+    if obj.faces.iter().map(|face| face.vertices.len()).sum::<usize>() <= 10 * MOST_SURFACES {
+        look_with(&document, &files);
+    }
+}
+
 /// A crex: read, printed, read again, explained and walked.
 pub fn crex(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
@@ -162,7 +178,11 @@ fn check_document(document: &Document) {
 
 /// Renders a few pixels of a document: no NaN and no infinity in any plane.
 fn look_at(document: &Document) {
-    let Ok(scene) = Scene::from_rad(document) else { return };
+    look_with(document, &MemoryFiles::new());
+}
+
+fn look_with(document: &Document, files: &MemoryFiles) {
+    let Ok(scene) = Scene::from_rad_with(document, files) else { return };
     if scene.surfaces.len() > MOST_SURFACES {
         return;
     }
@@ -188,7 +208,11 @@ fn look_through(scene: &Scene, aggregate: &Aggregate, view: &View) {
     let block = Block { x: 0, y: 0, width: EDGE, height: EDGE };
     let mut parcel = Parcel::new(block, 0..1, ComponentSet::ALL, true);
     let mut workspace = Workspace::default();
-    parcel.trace_primary(&tracer, &Samples { view, width: EDGE, height: EDGE, jitter: 1.0 }, &mut workspace);
+    parcel.trace_primary(
+        &tracer,
+        &Samples { view, width: EDGE, height: EDGE, jitter: 1.0, aperture: 0.0 },
+        &mut workspace,
+    );
     let Ok(program) = crex::compile("(DSGTRM)3") else { return };
     let mut cursor = Cursor::new(&program);
     while let Some(work) = cursor.next() {

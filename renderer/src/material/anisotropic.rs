@@ -37,10 +37,62 @@ pub struct Anisotropic {
 }
 
 /// The directions of the gloss at a hit.
-struct Axes {
+pub(super) struct Axes {
     along: DVec3,
     across: DVec3,
     roughness: [f64; 2],
+}
+
+impl Axes {
+    /// Around a normal, the first along `axis` as far as that is perpendicular.
+    pub(super) fn of(normal: DVec3, axis: DVec3, roughness: [f64; 2]) -> Self {
+        match normal.cross(axis).try_normalize() {
+            Some(across) => Self { along: across.cross(normal), across, roughness },
+            // An axis along the normal: as rough in all directions, by the mean of both.
+            None => {
+                let frame = Frame::around(normal);
+                let [along, across] = roughness;
+                let mean = (0.5 * (along * along + across * across)).sqrt();
+                Self { along: frame.u, across: frame.v, roughness: [mean; 2] }
+            }
+        }
+    }
+
+    fn slopes2(&self, half: DVec3) -> f64 {
+        let [along, across] = [half.dot(self.along) / self.roughness[0], half.dot(self.across) / self.roughness[1]];
+        along * along + across * across
+    }
+
+    fn scale(&self) -> f64 {
+        PI * self.roughness[0] * self.roughness[1]
+    }
+
+    /// Value of the reflection lobe, 1/sr.
+    pub(super) fn reflected(&self, incoming: DVec3, normal: DVec3, to_light: DVec3) -> f64 {
+        let half = to_light - incoming;
+        let height = half.dot(normal);
+        if height <= 0.0 {
+            return 0.0;
+        }
+        let height2 = height * height;
+        (-self.slopes2(half) / height2).exp() * half.length_squared() / (self.scale() * height2 * height2)
+    }
+
+    /// The fraction passed per solid angle, with the light's cosine in it; `cosine` is that of the incoming ray.
+    pub(super) fn passed(&self, through: DVec3, normal: DVec3, cosine: f64, to_light: DVec3) -> f64 {
+        let off = to_light - through;
+        let length2 = off.length_squared();
+        let height = off.dot(normal);
+        let sine2 = if length2 > 1e-12 { 1.0 - height * height / length2 } else { 0.0 };
+        let exponent = if sine2 > 1e-12 { self.slopes2(off) / sine2 } else { 0.0 };
+        (-exponent).exp() * (-to_light.dot(normal) / cosine).sqrt() / self.scale()
+    }
+
+    /// The first direction, as long as its roughness, and the other's roughness.
+    pub(super) fn scaled(&self) -> (glam::Vec3, f32) {
+        let [along, across] = self.roughness.map(|roughness| roughness as f32);
+        (self.along.as_vec3() * along, across)
+    }
 }
 
 impl Anisotropic {
@@ -97,16 +149,7 @@ impl Anisotropic {
     }
 
     fn axes(&self, normal: DVec3) -> Axes {
-        match normal.cross(self.axis).try_normalize() {
-            Some(across) => Axes { along: across.cross(normal), across, roughness: self.roughness },
-            // An axis along the normal: as rough in all directions, by the mean of both.
-            None => {
-                let frame = Frame::around(normal);
-                let [along, across] = self.roughness;
-                let mean = (0.5 * (along * along + across * across)).sqrt();
-                Axes { along: frame.u, across: frame.v, roughness: [mean; 2] }
-            }
-        }
+        Axes::of(normal, self.axis, self.roughness)
     }
 
     /// The fraction of a light's radiance that the surface sends back along the ray; see
@@ -116,31 +159,17 @@ impl Anisotropic {
         let Interaction { incoming, normal, .. } = *interaction;
         let cosine = normal.dot(to_light);
         let axes = self.axes(normal);
-        let variances = axes.roughness.map(|roughness| roughness * roughness);
-        let slopes2 = |half: DVec3| {
-            let (along, across) = (half.dot(axes.along), half.dot(axes.across));
-            along * along / variances[0] + across * across / variances[1]
-        };
-        let scale = PI * (variances[0] * variances[1]).sqrt();
         if cosine > 0.0 {
             let mut coefficient = self.diffuse() * (cosine * solid_angle / PI);
-            let half = to_light - incoming;
-            let height = half.dot(normal);
-            if self.specularity > 0.0 && height > 0.0 {
-                let height2 = height * height;
-                let lobe = (-slopes2(half) / height2).exp() * half.length_squared() / (scale * height2 * height2);
+            if self.specularity > 0.0 {
+                let lobe = axes.reflected(incoming, normal, to_light);
                 coefficient += self.specular() * (lobe * cosine * solid_angle);
             }
             coefficient
         } else if cosine < 0.0 {
             let mut coefficient = self.color * (self.passed_diffuse * -cosine * solid_angle / PI);
             if self.passed_specular > 0.0 {
-                let off = to_light - incoming;
-                let length2 = off.length_squared();
-                let height = off.dot(normal);
-                let sine2 = if length2 > 1e-12 { 1.0 - height * height / length2 } else { 0.0 };
-                let exponent = if sine2 > 1e-12 { slopes2(off) / sine2 } else { 0.0 };
-                let lobe = (-exponent).exp() * (-cosine / interaction.cosine).sqrt() / scale;
+                let lobe = axes.passed(incoming, normal, interaction.cosine, to_light);
                 coefficient += self.color * (self.passed_specular * lobe * solid_angle);
             }
             coefficient
@@ -159,18 +188,16 @@ impl Anisotropic {
                 spawn(Lobe { event, spread, coefficient, medium: None });
             }
         };
-        let [along, across] = axes.roughness.map(|roughness| roughness as f32);
-        let (normal32, incoming32, axis) = (normal.as_vec3(), incoming.as_vec3(), axes.along.as_vec3());
+        let (axis, across) = axes.scaled();
+        let (normal32, incoming32) = (normal.as_vec3(), incoming.as_vec3());
         if self.specularity > threshold {
-            let spread =
-                Spread::EllipticReflection { normal: normal32, incoming: incoming32, axis: axis * along, across };
+            let spread = Spread::EllipticReflection { normal: normal32, incoming: incoming32, axis, across };
             lobe(Event::RoughReflection, spread, self.specular());
         } else {
             diffuse += self.specular();
         }
         if self.passed_specular > threshold {
-            let spread =
-                Spread::EllipticTransmission { normal: normal32, through: incoming32, axis: axis * along, across };
+            let spread = Spread::EllipticTransmission { normal: normal32, through: incoming32, axis, across };
             lobe(Event::RoughTransmission, spread, self.color * self.passed_specular);
         } else {
             through += self.color * self.passed_specular;

@@ -51,6 +51,8 @@ impl Bend {
                 _ => lobe.spread,
             },
             (Event::Refraction, Spread::Ideal(direction)) => Spread::Ideal(aside(direction)),
+            // Where a prism sends light its functions alone say.
+            (Event::PrismTransmission, spread) => spread,
             (_, Spread::Ideal(direction)) if direction.dot(self.flat) <= 0.0 => {
                 Spread::Ideal((incoming - self.flat * (2.0 * incoming.dot(self.flat))).normalize())
             }

@@ -27,6 +27,8 @@ pub enum Event {
     BoundaryReflection,
     /// Reflection off a mirror.
     MirrorReflection,
+    /// Redirection by a prism, whichever way that is.
+    PrismTransmission,
 }
 
 impl Event {
@@ -44,7 +46,8 @@ impl Event {
             | Self::SmoothTransmission
             | Self::RoughTransmission
             | Self::PaneTransmission
-            | Self::Refraction => false,
+            | Self::Refraction
+            | Self::PrismTransmission => false,
         }
     }
 
@@ -73,7 +76,9 @@ impl Component {
             Event::DiffuseReflection | Event::DiffuseTransmission => Self::Diffuse,
             Event::SmoothReflection => Self::Specular,
             Event::RoughReflection | Event::RoughTransmission => Self::Glossy,
-            Event::SmoothTransmission | Event::PaneTransmission | Event::Refraction => Self::Transmitted,
+            Event::SmoothTransmission | Event::PaneTransmission | Event::Refraction | Event::PrismTransmission => {
+                Self::Transmitted
+            }
             Event::PaneReflection | Event::BoundaryReflection => Self::Reflected,
             Event::MirrorReflection => Self::Mirror,
         }

@@ -19,10 +19,13 @@ mod interaction;
 mod lobe;
 mod metal;
 mod mirror;
+mod mist;
 mod plastic;
+mod prism;
 mod response;
 mod trans;
 mod ward;
+mod wgmd;
 
 pub use anisotropic::{Anisotropic, Gloss};
 pub use arguments::ArgumentError;
@@ -38,9 +41,12 @@ pub use interaction::Interaction;
 pub use lobe::{GlossySampling, Lobe, Spread};
 pub use metal::Metal;
 pub use mirror::Mirror;
+pub use mist::{MistArguments, MistId};
 pub use plastic::Plastic;
+pub use prism::Prism;
 pub use response::Response;
 pub use trans::Trans;
+pub use wgmd::{Facet, Sheen, Wgmd};
 
 use crate::color::Rgb;
 use crate::component::{Component, ComponentSet};
@@ -92,10 +98,16 @@ pub enum Material {
     Ashikhmin(Ashikhmin),
     /// A material with a reflection function of its own, at a hit.
     Functional(Functional, ProgramId),
-    /// One of those three, before functions have said what it is at a hit.
+    /// `prism1` or `prism2` at a hit.
+    Prism(Prism),
+    /// `WGMDfunc` at a hit.
+    Wgmd(Wgmd),
+    /// One of those five, before functions have said what it is at a hit.
     Programmed(ProgramId),
     /// What cuts other solids away.
     Antimatter(AntimatterId),
+    /// The boundary of mist.
+    Mist(MistId),
     /// One of these under patterns and textures, or a mixture of two.
     Dressed(DressId),
 }
@@ -151,8 +163,11 @@ impl Material {
             | Self::Anisotropic(_)
             | Self::Ashikhmin(_)
             | Self::Functional(..)
+            | Self::Prism(_)
+            | Self::Wgmd(_)
             | Self::Programmed(_)
             | Self::Antimatter(_)
+            | Self::Mist(_)
             | Self::Dressed(_) => self,
         }
     }
@@ -206,7 +221,9 @@ impl Material {
             Self::Anisotropic(anisotropic) => anisotropic.scatter(&interaction, threshold, spawn),
             Self::Ashikhmin(ashikhmin) => ashikhmin.scatter(&interaction, threshold, spawn),
             Self::Functional(functional, _) => functional.scatter(&interaction, spawn),
-            Self::Emitter(_) | Self::Programmed(_) | Self::Antimatter(_) | Self::Dressed(_) => {}
+            Self::Prism(prism) => prism.scatter(spawn),
+            Self::Wgmd(wgmd) => wgmd.scatter(interaction.incoming, threshold, spawn),
+            Self::Emitter(_) | Self::Programmed(_) | Self::Antimatter(_) | Self::Mist(_) | Self::Dressed(_) => {}
         }
     }
 }

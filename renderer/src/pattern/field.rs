@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::place::Local;
-use super::{Place, Reflection, Table, Text};
+use super::{Place, Reflection, Spectrum, Table, Text};
 use crate::cal::{Evaluator, Expression, Lambda};
 use crate::math::Similarity;
 
@@ -50,6 +50,13 @@ pub enum Source {
         coordinates: [Expression; 2],
         /// One of three numbers for each channel, or a single one.
         finish: Vec<Applied>,
+    },
+    /// A spectrum, made red, green and blue; of a table at the point that expressions give, without the wavelength.
+    Spectrum {
+        /// The spectrum.
+        spectrum: Spectrum,
+        /// As many as a table has dimensions, less one.
+        coordinates: Vec<Expression>,
     },
     /// One value in letters, another beside them.
     Text {
@@ -117,6 +124,14 @@ impl Field {
                 evaluator.move_on();
                 let (u, v) = (evaluator.value(*u, &at).ok()?, evaluator.value(*v, &at).ok()?);
                 finished(finish, picture.value(&[v, u]), &at, evaluator)?
+            }
+            Source::Spectrum { spectrum, coordinates } => {
+                evaluator.move_on();
+                let mut point = [0.0; Table::MOST_DIMENSIONS];
+                for (value, expression) in point.iter_mut().zip(coordinates) {
+                    *value = evaluator.value(*expression, &at).ok()?;
+                }
+                spectrum.value(&point[..coordinates.len()], &at, evaluator)?
             }
             Source::Text { text, fore, back } => {
                 if text.covers(place.local_point()) {

@@ -139,6 +139,16 @@ impl Table {
         self.axes.len()
     }
 
+    /// Where the last dimension starts and ends, and how many points it has.
+    #[must_use]
+    pub fn last_axis(&self) -> (f64, f64, usize) {
+        match self.axes.last() {
+            Some(Axis::Even { first, last, count }) => (*first, *last, *count),
+            Some(Axis::Uneven(points)) if !points.is_empty() => (points[0], points[points.len() - 1], points.len()),
+            _ => (0.0, 0.0, 0),
+        }
+    }
+
     /// The value at a point, which has as many coordinates as the table dimensions; of a picture red, green and blue, of
     /// a table of numbers the number first.
     #[must_use]

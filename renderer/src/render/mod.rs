@@ -50,7 +50,7 @@ impl<'a> Renderer<'a> {
         clock: &'a dyn Clock,
         settings: Settings,
     ) -> Result<Self, RenderError> {
-        settings::check(&settings)?;
+        settings::check(&settings, view)?;
         let (importance, thresholds, progress) = (None, None, None);
         let rule = Rule::Thresholds;
         Ok(Self { scene, aggregate, view, program, clock, settings, importance, thresholds, rule, progress })

@@ -73,8 +73,8 @@ impl<'a> Renderer<'a> {
     }
 
     pub(super) fn samples(&self) -> Samples<'a> {
-        let Settings { width, height, jitter, .. } = self.settings;
-        Samples { view: self.view, width, height, jitter }
+        let Settings { width, height, jitter, aperture, .. } = self.settings;
+        Samples { view: self.view, width, height, jitter, aperture }
     }
 
     pub(super) fn film(&self) -> Film {

@@ -3,6 +3,7 @@
 use crate::color::Rgb;
 use crate::crex::ThresholdError;
 use crate::film::Layers;
+use crate::scene::View;
 use crate::transport::Limits;
 
 /// How to render. Same settings, same bits, for any number of threads.
@@ -18,6 +19,8 @@ pub struct Settings {
     pub seed: u64,
     /// `-pj`: how much of a pixel's extent its samples cover, in [0, 1].
     pub jitter: f64,
+    /// `-pd`: diameter of the lens, in the scene's unit; 0 is a point. Perspective views only.
+    pub aperture: f64,
     /// Where paths end and how they branch.
     pub limits: Limits,
     /// `-av`: radiance that stands for diffuse light that is not traced, W/(sr m2).
@@ -40,6 +43,7 @@ impl Settings {
             samples: 1,
             seed: 0,
             jitter: 1.0,
+            aperture: 0.0,
             limits: Limits::default(),
             ambient: Rgb::ZERO,
             lights_visible: true,
@@ -93,7 +97,10 @@ pub(super) fn out_of_range(name: &'static str, value: impl std::fmt::Display, ex
     RenderError::Setting { name, value: value.to_string(), expected }
 }
 
-pub(super) fn check(settings: &Settings) -> Result<(), RenderError> {
+/// Lengths beyond this are refused, as in scenes.
+const LARGEST: f64 = 1e75;
+
+pub(super) fn check(settings: &Settings, view: &View) -> Result<(), RenderError> {
     let Limits { least_weight, glossy_threshold, glossy_rays, .. } = settings.limits;
     let within =
         |holds: bool, name, value: f64, expected| if holds { Ok(()) } else { Err(out_of_range(name, value, expected)) };
@@ -103,6 +110,11 @@ pub(super) fn check(settings: &Settings) -> Result<(), RenderError> {
     }
     within(settings.samples > 0, "the number of samples", 0.0, "at least 1")?;
     within((0.0..=1.0).contains(&settings.jitter), "the pixel jitter (-pj)", settings.jitter, "a number from 0 to 1")?;
+    if settings.aperture != 0.0 {
+        let (aperture, perspective) = (settings.aperture, view.takes_lens());
+        within((0.0..=LARGEST).contains(&aperture), "the lens (-pd)", aperture, "a diameter from 0 to 1e75")?;
+        within(perspective, "the lens (-pd)", aperture, "0, since only perspective views (-vtv) have one")?;
+    }
     let positive = |x: f64| (0.0..f64::INFINITY).contains(&x);
     within(positive(least_weight), "the least weight (-lw)", least_weight, "a number, 0 or more")?;
     within(positive(glossy_threshold), "the specular threshold (-st)", glossy_threshold, "a number, 0 or more")?;

@@ -7,10 +7,12 @@ mod from_rad;
 mod group;
 mod holdings;
 mod light;
+mod mist;
 mod names;
 mod program;
 mod surface;
 mod view;
+mod wgmd;
 
 use std::collections::HashMap;
 
@@ -18,7 +20,7 @@ use glam::DVec3;
 
 use crate::component::ComponentSet;
 use crate::geometry::{Aggregate, Item, Passage, Shape, SurfaceId};
-use crate::material::{Alternate, AntimatterId, EmitterKind, Interaction, Material, MaterialId, Mirror};
+use crate::material::{Alternate, AntimatterId, EmitterKind, Interaction, Material, MaterialId, Mirror, ProgramId};
 use crate::pattern::Library;
 use crate::rad;
 
@@ -26,6 +28,7 @@ pub use dress::Worn;
 pub use far::{FarId, FarSource};
 pub use holdings::Holdings;
 pub use light::{Leg, Light, LightSample};
+pub use mist::{Haze, Mists};
 pub use names::NameId;
 use names::Names;
 pub use program::reflection;
@@ -64,6 +67,8 @@ pub struct Scene {
     antimatters: Vec<antimatter::Antimatter>,
     /// The antimatters that cut a surface away, for those that any does.
     cut_by: HashMap<SurfaceId, Vec<AntimatterId>>,
+    /// Kinds of mist.
+    mists: Vec<mist::Mist>,
     /// Instances and meshes, by falling number of their first surface.
     groups: Vec<group::Group>,
     /// Materials that functions decide.
@@ -158,20 +163,26 @@ impl Scene {
         seen
     }
 
-    /// Sets over how many reflections flat mirrors relay lights (`rpict(1)`, `-dr`); 0 is none.
+    /// Sets over how many reflections and redirections flat mirrors and prisms relay lights (`rpict(1)`, `-dr`); 0 is none.
     pub fn set_relays(&mut self, levels: u32) {
         self.lights.retain(|light| light.relay().is_empty());
-        let mirrors: Vec<(SurfaceId, &Shape)> = self
+        let sheets: Vec<(SurfaceId, light::Sheet)> = self
             .surfaces
             .iter()
             .enumerate()
-            .filter(|(_, surface)| {
-                surface.material.is_some_and(|material| self.mirror(material).is_some()) && surface.shape.is_flat()
+            .filter(|(_, surface)| surface.shape.is_flat())
+            .filter_map(|(index, surface)| {
+                let material = surface.material?;
+                let sheet = match self.prism(material) {
+                    Some(prism) => light::Sheet::Prism(prism),
+                    None => self.mirror(material).map(|_| light::Sheet::Mirror)?,
+                };
+                Some((SurfaceId(u32::try_from(index).ok()?), sheet))
             })
-            .filter_map(|(index, surface)| Some((SurfaceId(u32::try_from(index).ok()?), &surface.shape)))
             .collect();
-        let images = light::relayed(&self.lights, &mirrors, self, levels);
+        let images = light::relayed(&self.lights, &sheets, self, levels);
         self.lights.extend(images);
+        self.find_scattered_lights();
     }
 
     /// The mirror that relays lights in a material; one in a mixture does not, as in Radiance.
@@ -180,6 +191,15 @@ impl Scene {
         match &self.materials[material.index()] {
             Material::Mirror(mirror) => Some(mirror),
             Material::Dressed(id) => self.base(*id).and_then(|base| self.mirror(base)),
+            _ => None,
+        }
+    }
+
+    /// The prism that relays lights in a material.
+    fn prism(&self, material: MaterialId) -> Option<ProgramId> {
+        match &self.materials[material.index()] {
+            Material::Programmed(id) => (self.ways(*id) > 0).then_some(*id),
+            Material::Dressed(id) => self.base(*id).and_then(|base| self.prism(base)),
             _ => None,
         }
     }
@@ -207,9 +227,12 @@ impl Scene {
                 | Material::Mirror(_)
                 | Material::Anisotropic(_)
                 | Material::Ashikhmin(_)
-                | Material::Functional(..) => false,
+                | Material::Functional(..)
+                // Lights shine through a prism by their images alone.
+                | Material::Prism(_)
+                | Material::Wgmd(_) => false,
                 Material::Programmed(id) => self.passes(*id),
-                Material::Antimatter(_) => true,
+                Material::Antimatter(_) | Material::Mist(_) => true,
                 Material::Trans(trans) => trans.shadow(&head_on).max_element() > 0.0,
                 Material::Glass(glass) => glass.shadow(&head_on).max_element() > 0.0,
                 Material::Dielectric(_) => return Passage::Refracting,

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::Scene;
+use super::{Scene, wgmd};
 use crate::color::Rgb;
 use crate::component::{Component, ComponentSet};
-use crate::material::{Anisotropic, Ashikhmin, Event, Functional, Interaction, Material, ProgramId};
+use crate::material::{Anisotropic, Ashikhmin, Event, Functional, Interaction, Material, Prism, ProgramId};
 use crate::pattern::{Evaluator, Field, Law, Memory, Place, Reflection};
 
 /// A material before its functions have been asked.
@@ -20,9 +20,64 @@ pub(super) enum Program {
     Parts { color: Rgb, specular: f64, transmitted: f64, transmitted_specular: f64, metallic: bool, law: Law },
     /// `BRTDfunc`: diffuse parts in front, behind and through; what is mirrored and passed.
     Free { diffuse: [Rgb; 3], mirrored: Field, passed: Field, law: Option<Law> },
+    /// `WGMDfunc`.
+    Wgmd(Box<wgmd::Parts>),
+    /// `prism1`, `prism2`: the ways that light takes.
+    Prism(Vec<Way>),
+}
+
+/// A way that a prism sends light.
+#[derive(Clone, Debug)]
+pub(super) struct Way {
+    /// The fraction of radiance that takes it.
+    pub(super) coefficient: Field,
+    /// Where to, of any length.
+    pub(super) direction: Field,
+}
+
+/// Where a prism's coefficient saturates; Radiance clamps none either.
+const MOST_COEFFICIENT: f64 = 1e30;
+
+impl Way {
+    /// The unit direction and the fraction for a ray that meets the prism at `place`; `None` where functions fail or
+    /// nothing passes. `to_light`: unit direction to the light that is asked for, 0 if none is.
+    fn at(&self, place: &Place<'_>, to_light: DVec3, evaluator: &mut Evaluator<'_>) -> Option<(DVec3, f64)> {
+        let mut reflection = reflection(place, DVec3::ZERO, Rgb::ONE);
+        reflection.to_light = Some(to_light);
+        let [coefficient, ..] = self.coefficient.reflected(place, Some(&reflection), evaluator)?;
+        if coefficient <= 0.0 {
+            return None;
+        }
+        let direction = self.direction.reflected(place, Some(&reflection), evaluator)?;
+        let direction = place.turned_back(&self.direction.to_local, DVec3::from(direction));
+        // Of any length, even one whose square overflows.
+        let direction = (direction / direction.abs().max_element()).try_normalize()?;
+        Some((direction, coefficient.min(MOST_COEFFICIENT)))
+    }
 }
 
 impl Scene {
+    /// Where way `way` of a prism leads a ray that meets it at `place`, a unit vector, and the fraction of radiance that
+    /// comes from there; `None` if none does. `to_light` is the unit direction to the light that is asked for.
+    pub(super) fn redirected(
+        &self,
+        (id, way): (ProgramId, usize),
+        place: &Place<'_>,
+        to_light: DVec3,
+        memory: &mut Memory,
+    ) -> Option<(DVec3, f64)> {
+        let Program::Prism(ways) = &self.programs[id.index()] else { return None };
+        let mut evaluator = self.library.as_ref()?.evaluator(std::mem::take(memory));
+        let redirected = ways.get(way).and_then(|way| way.at(place, to_light, &mut evaluator));
+        *memory = evaluator.into_memory();
+        redirected
+    }
+
+    /// The ways of a prism, by their number; 0 if the program is none.
+    pub(super) fn ways(&self, id: ProgramId) -> usize {
+        if let Program::Prism(ways) = &self.programs[id.index()] { ways.len() } else { 0 }
+    }
+
     /// The material that a program is at a hit, under a pattern of colour `tint`.
     #[must_use]
     pub fn programmed(
@@ -98,6 +153,14 @@ impl Scene {
                     id,
                 )
             }
+            Program::Wgmd(parts) => Material::Wgmd(parts.at(place, (tint, bend), evaluator)?),
+            Program::Prism(ways) => {
+                let mut prism = Prism::default();
+                for (slot, way) in prism.ways.iter_mut().zip(ways) {
+                    *slot = way.at(place, DVec3::ZERO, evaluator).unwrap_or_default();
+                }
+                Material::Prism(prism)
+            }
         })
     }
 
@@ -132,13 +195,19 @@ impl Scene {
             Program::Anisotropic(material, _) => Material::Anisotropic(*material).components(threshold),
             Program::Ashikhmin(material, _) => Material::Ashikhmin(*material).components(threshold),
             Program::Parts { .. } => of(&[Event::DiffuseReflection]),
+            Program::Wgmd(parts) => of(&parts.events()),
+            Program::Prism(_) => of(&[Event::PrismTransmission]),
             Program::Free { .. } => of(&[Event::DiffuseReflection, Event::SmoothReflection, Event::SmoothTransmission]),
         }
     }
 
     /// Whether a program lets shadow rays through.
     pub(super) fn passes(&self, id: ProgramId) -> bool {
-        matches!(self.programs[id.index()], Program::Free { .. })
+        match &self.programs[id.index()] {
+            Program::Free { .. } => true,
+            Program::Wgmd(parts) => parts.passed.is_some(),
+            _ => false,
+        }
     }
 }
 

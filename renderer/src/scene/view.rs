@@ -164,6 +164,30 @@ impl View {
     }
 }
 
+impl View {
+    /// Whether it may have a lens of some width.
+    #[must_use]
+    pub fn takes_lens(&self) -> bool {
+        self.spec.kind == ViewKind::Perspective
+    }
+
+    /// A ray of the view as one through a point of a lens: it meets the ray in the plane at the focus distance, the length
+    /// of `-vd` (`rpict(1)`, `-pd`). `lens` is a point of the unit disc, `diameter` the lens's; of perspectives only.
+    /// `None` if the numbers leave the range of `f64`.
+    #[must_use]
+    pub fn through_lens(&self, ray: &Ray, diameter: f64, lens: DVec2) -> Option<Ray> {
+        let focus = DVec3::from(self.spec.direction).length();
+        let ahead = ray.dir.dot(self.direction);
+        let aside = (self.right * lens.x + self.up * lens.y) * (0.5 * diameter);
+        let towards = (ray.dir * (focus / ahead) - aside).try_normalize()?;
+        let stretch = 1.0 / towards.dot(self.direction);
+        let origin = self.point + aside + towards * (self.spec.fore * stretch);
+        let ray = Ray::new(origin, towards);
+        let usable = stretch.is_finite() && origin.is_finite();
+        usable.then(|| if self.spec.aft > 0.0 { ray.up_to((self.spec.aft - self.spec.fore) * stretch) } else { ray })
+    }
+}
+
 fn unit(vector: [f64; 3]) -> Option<DVec3> {
     let vector = DVec3::from(vector);
     let scale = vector.abs().max_element();

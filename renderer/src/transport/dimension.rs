@@ -21,5 +21,11 @@ pub(super) const CHOICE: u32 = 49;
 /// The material of a mixture.
 pub(super) const MIXTURE: u32 = 50;
 
+/// The point of the lens.
+pub(super) const LENS: u32 = 51;
+
+/// Where and from which point of a light mist scatters, from here on.
+pub(super) const MIST: u32 = 0x4000_0000;
+
 /// The point on light number i, the i-th from here.
 pub(super) const LIGHT: u32 = 64;

@@ -14,6 +14,7 @@ use crate::pattern::{Memory, Place};
 use crate::sample::Sampler;
 use crate::scene::{Leg, Light, LightSample, Scene, SourceId};
 
+use super::air::{Medium, Piece, mist_at};
 use super::dimension;
 use super::look::{far_away, passed, place};
 use super::ray::transmittance;
@@ -23,6 +24,7 @@ use super::ray::transmittance;
 pub(super) struct Scratch {
     crossings: Vec<Hit>,
     legs: Vec<Leg>,
+    pub(super) pieces: Vec<Piece>,
     proposals: Vec<Proposal>,
     pub(super) memory: Memory,
     /// Of the hit's material, while those of what lies on the way use the other.
@@ -62,8 +64,8 @@ pub(super) struct Lit<'a> {
     pub(super) aggregate: &'a Aggregate,
     /// Starts at the hit and names its surface; direction and end do not count.
     pub(super) start: Ray,
-    /// Extinction of the medium around the hit.
-    pub(super) extinction: Vec3,
+    /// What is around the hit.
+    pub(super) medium: Medium,
     /// About how many shadow rays may be spent.
     pub(super) tests: usize,
 }
@@ -107,13 +109,22 @@ impl Lit<'_> {
         sum
     }
 
+    /// Of one light, the unit direction from which it arrives and its radiance times its solid angle there, for a point of
+    /// it that `u` chooses.
+    pub(super) fn one(&self, light: u32, u: [f64; 2], scratch: &mut Scratch) -> Option<(DVec3, Rgb)> {
+        let sample = self.scene.lights.get(light as usize)?.sample(self.start.origin, u)?;
+        let unshadowed = sample.radiance * sample.solid_angle;
+        let arriving = self.arriving(&Proposal { light, sample, unshadowed }, scratch);
+        (arriving != Rgb::ZERO).then(|| (sample.dir, unshadowed * arriving))
+    }
+
     /// The fraction of a proposal's light that arrives.
     fn arriving(&self, proposal: &Proposal, scratch: &mut Scratch) -> Rgb {
         let light = &self.scene.lights[proposal.light as usize];
         let sample = &proposal.sample;
         let start = Ray { dir: sample.dir, t_max: sample.distance, ..self.start };
         if !light.relay().is_empty() {
-            if !light.legs(self.scene, start, sample, &mut scratch.legs) {
+            if !light.legs(self.scene, start, sample, &mut scratch.memory, &mut scratch.legs) {
                 return Rgb::ZERO;
             }
             return self.visible(light, &start, &scratch.legs, &mut scratch.crossings, &mut scratch.memory);
@@ -122,32 +133,43 @@ impl Lit<'_> {
             SourceId::Surface(surface) => Some(surface),
             SourceId::Far(_) => None,
         };
-        let leg = Leg { ray: start, target, mirror: None };
+        let leg = Leg { ray: start, target, left: Rgb::ONE };
         self.visible(light, &start, std::slice::from_ref(&leg), &mut scratch.crossings, &mut scratch.memory)
     }
 
     /// The fraction of a light's radiance that is left at the hit, which sees it along `legs`.
     fn visible(&self, light: &Light, start: &Ray, legs: &[Leg], crossings: &mut Vec<Hit>, memory: &mut Memory) -> Rgb {
         let mut fraction = Rgb::ONE;
+        let mut medium = self.medium;
+        let misty = self.scene.has_mist();
         for leg in legs {
             match self.aggregate.shadow(&leg.ray, leg.target, crossings) {
                 Shadow::Blocked => return Rgb::ZERO,
                 Shadow::Refracted => return self.refracted(light, *start, memory),
                 Shadow::Clear => {}
             }
+            let mut from = 0.0;
             for hit in crossings.iter() {
+                if misty && let Some(mist) = mist_at(self.scene, hit) {
+                    let front = hit.is_front(leg.ray.dir);
+                    fraction *= medium.before(self.scene, mist, front).dims(self.scene, hit.t - from);
+                    medium = medium.beyond(self.scene, mist, front);
+                    from = hit.t;
+                    continue;
+                }
                 match self.straight(light, hit, &leg.ray, memory) {
                     Some(passed) => fraction = (fraction * passed).min(Rgb::splat(MOST_PASSED)),
                     None => return Rgb::ZERO,
                 }
             }
-            if let Some(mirror) = &leg.mirror {
-                fraction *= self.mirrored(self.scene.material(mirror.surface), mirror, &leg.ray, memory);
+            if misty {
+                fraction *= medium.dims(self.scene, leg.ray.t_max - from);
             }
+            fraction *= leg.left;
         }
-        if self.extinction != Vec3::ZERO {
+        if !misty && self.medium.extinction != Vec3::ZERO {
             // Nothing bent the ray, so it did not leave the medium that the hit lies in.
-            fraction *= transmittance(self.extinction, legs.iter().map(|leg| leg.ray.t_max).sum());
+            fraction *= transmittance(self.medium.extinction, legs.iter().map(|leg| leg.ray.t_max).sum());
         }
         if let (Some(dress), Some(last)) = (light.dress(), legs.last())
             && fraction != Rgb::ZERO
@@ -176,27 +198,14 @@ impl Lit<'_> {
         }
     }
 
-    /// What a mirror leaves of the light that it relays, under its patterns.
-    fn mirrored(&self, material: Option<&Material>, hit: &Hit, ray: &Ray, memory: &mut Memory) -> Rgb {
-        match material {
-            Some(Material::Mirror(mirror)) => mirror.reflectance(),
-            Some(Material::Dressed(id)) => {
-                let place = place(self.scene, hit, ray);
-                let [(_, shown), _] = self.scene.shown(*id, &place, memory);
-                self.mirrored(shown, hit, ray, memory) * self.scene.tint(*id, &place, memory)
-            }
-            _ => Rgb::ZERO,
-        }
-    }
-
     /// The fraction of a light's radiance that arrives by a ray which refracting solids bend: it counts if it comes to
-    /// the light after all, over the mirrors that relay it.
+    /// the light after all, over the mirrors and prisms that relay it.
     fn refracted(&self, light: &Light, start: Ray, memory: &mut Memory) -> Rgb {
         let mut ray = Ray { t_max: f64::INFINITY, ..start };
-        let mut extinction = self.extinction;
+        let mut medium = self.medium;
         let mut fraction = Rgb::ONE;
-        let mut mirrors = light.relay().iter();
-        let mut next = mirrors.next();
+        let mut relay = light.relay().iter().enumerate();
+        let mut next = relay.next();
         for _ in 0..MOST_CROSSINGS {
             let Some(hit) = self.aggregate.closest(&ray) else {
                 let arrives = match light.source() {
@@ -207,24 +216,28 @@ impl Lit<'_> {
                     return Rgb::ZERO;
                 }
                 let tint = light.dress().map_or(Rgb::ONE, |dress| self.scene.tint(dress, &far_away(&ray), memory));
-                return fraction * tint * transmittance(extinction, f64::INFINITY);
+                return fraction * tint * medium.dims(self.scene, f64::INFINITY);
             };
             let front = hit.is_front(ray.dir);
             let material = self.scene.material(hit.surface);
             if let Some(Material::Dielectric(dielectric)) = material
-                && let Some(medium) = dielectric.medium(front)
+                && let Some(extinction) = dielectric.medium(front)
             {
-                extinction = medium.as_vec3();
+                medium = Medium::solid(extinction);
             }
-            fraction *= transmittance(extinction, hit.t);
+            let mist = mist_at(self.scene, &hit);
+            if let Some(mist) = mist {
+                medium = medium.before(self.scene, mist, front);
+            }
+            fraction *= medium.dims(self.scene, hit.t);
             let mut dir = ray.dir;
-            if next == Some(&hit.surface) {
-                if !front {
+            if let Some((index, _)) = next.filter(|(_, surface)| **surface == hit.surface) {
+                let Some((turned, left)) = light.turn(index, self.scene, &ray, &hit, memory) else {
                     return Rgb::ZERO;
-                }
-                fraction *= self.mirrored(material, &hit, &ray, memory);
-                dir = Interaction::new(ray.dir, hit.normal).reflected();
-                next = mirrors.next();
+                };
+                fraction *= left;
+                dir = turned;
+                next = relay.next();
             } else if next.is_none() && light.source() == SourceId::Surface(hit.surface) {
                 if !front {
                     return Rgb::ZERO;
@@ -236,8 +249,10 @@ impl Lit<'_> {
                 else {
                     return Rgb::ZERO;
                 };
-                (dir, extinction) = (bent, beyond.as_vec3());
+                (dir, medium) = (bent, Medium::solid(beyond));
                 fraction *= coefficient;
+            } else if let Some(mist) = mist {
+                medium = medium.beyond(self.scene, mist, front);
             } else {
                 match self.straight(light, &hit, &ray, memory) {
                     Some(passed) => fraction *= passed,

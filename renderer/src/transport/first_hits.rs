@@ -99,14 +99,14 @@ impl Tracer<'_> {
     ) -> impl Iterator<Item = Meeting<'a>> {
         /// Of mixed materials the one that covers more is seen.
         const MIDDLE: f64 = 0.5;
-        let mut memory = Memory::default();
+        let (mut memory, mut pieces) = (Memory::default(), Vec::new());
         let middle = move |i: usize| (i as f64 + 0.5) / a_side as f64;
         (0..a_side * a_side).filter_map(move |i| {
             let across = (x as f64 + middle(i % a_side)) / samples.width as f64;
             let down = (y as f64 + middle(i / a_side)) / samples.height as f64;
             let ray = samples.view.ray(across, down)?;
             let path = PathRay { ray, ripple: Rgb::ONE, path: RayPath::primary(0, 0) };
-            self.meet(&path, MIDDLE, &mut memory)
+            self.meet(&path, MIDDLE, &mut memory, &mut pieces)
         })
     }
 }

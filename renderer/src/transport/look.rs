@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::color::Rgb;
 use crate::geometry::{Hit, Ray};
-use crate::material::{Alternate, DressId, EmitterKind, Interaction, Material};
+use crate::material::{Alternate, DressId, EmitterKind, Interaction, Material, MistId};
 use crate::pattern::{Finish, Memory, Place};
 use crate::scene::{Light, Scene, Worn};
 
@@ -16,6 +16,8 @@ pub(super) enum Look<'a> {
     Through,
     /// Nothing comes from it.
     Black,
+    /// The boundary of mist.
+    Mist(MistId),
     /// A material as it is.
     Plain(&'a Material),
     /// A material as patterns and textures make it, and what they add to the unit normal of the surface's front.
@@ -28,7 +30,7 @@ impl Look<'_> {
         match self {
             Self::Plain(material) => Some(material),
             Self::Dressed(material, _) => Some(material),
-            Self::Through | Self::Black => None,
+            Self::Through | Self::Black | Self::Mist(_) => None,
         }
     }
 }
@@ -65,6 +67,7 @@ impl<'a> Looker<'a> {
                     }
                     continue;
                 }
+                Material::Mist(id) => return Look::Mist(*id),
                 Material::Antimatter(id) => match scene.cut(*id, hit, self.ray.dir) {
                     Some(face) => {
                         material = face;
@@ -156,6 +159,7 @@ pub(super) fn passed<'a>(
     loop {
         return match material {
             Material::Trans(_) | Material::Glass(_) => straight_through(material, hit, ray),
+            Material::Mist(_) => Rgb::ONE,
             Material::Emitter(emitter) => {
                 let EmitterKind::Illum(alternate) = emitter.kind() else { return Rgb::ZERO };
                 // An illum already holds the light of the illums and glows behind it.
@@ -183,6 +187,7 @@ pub(super) fn passed<'a>(
             Material::Programmed(id) => {
                 match scene.programmed(*id, &place(scene, hit, ray), Rgb::ONE, DVec3::ZERO, memory) {
                     Some(Material::Functional(functional, _)) => functional.passed,
+                    Some(Material::Wgmd(wgmd)) => wgmd.shadow(),
                     _ => Rgb::ZERO,
                 }
             }

@@ -4,6 +4,7 @@
 //! [`Tracer`] traces one ray: nearest hit, emission, direct light, and then every lobe goes through the one door in
 //! `spawn` to a bin.
 
+mod air;
 mod bins;
 mod dimension;
 mod direct;
@@ -17,6 +18,7 @@ mod ray;
 mod spawn;
 mod trace;
 
+pub use air::Medium;
 pub use bins::{RayBins, SpawnRecord};
 pub use lattice::{RANKS, rank};
 pub use modulation::{Choice, Modulation, Rule};

@@ -27,6 +27,9 @@ impl Lit<'_> {
             Material::Ashikhmin(ashikhmin) => {
                 Some(self.light(|dir, size| ashikhmin.direct(interaction, dir, size), sampler, scratch))
             }
+            Material::Wgmd(wgmd) if wgmd.takes_direct_light() => {
+                Some(self.light(|dir, size| wgmd.direct(interaction.incoming, dir, size), sampler, scratch))
+            }
             Material::Functional(functional, id) if functional.takes_direct_light() => {
                 let reflection = reflection(place, bend, functional.color);
                 let mut evaluator = self.scene.evaluator(std::mem::take(&mut scratch.own_memory))?;

@@ -6,6 +6,7 @@ use crate::color::Rgb;
 use crate::component::{Component, ComponentSet, PerComponent};
 use crate::film::{Block, Plane, Planes};
 use crate::geometry::Ray;
+use crate::math::warp;
 use crate::sample::{PathKey, Sampler};
 use crate::scene::View;
 use crate::work::{BinOccupancy, Stage, WorkReport};
@@ -30,6 +31,8 @@ pub struct Samples<'a> {
     pub height: usize,
     /// `-pj`: how much of a pixel's extent its samples cover, in [0, 1]; 1 is a box filter, 0 samples the centre.
     pub jitter: f64,
+    /// `-pd`: diameter of the lens, which only perspective views have; 0 is a point.
+    pub aperture: f64,
 }
 
 /// Pixels and samples with the rays that they have brought forth so far.
@@ -100,7 +103,14 @@ impl Parcel {
                 let ray = samples
                     .view
                     .ray((x as f64 + across) / samples.width as f64, (y as f64 + down) / samples.height as f64);
-                let Some(ray) = ray else { continue };
+                let Some(mut ray) = ray else { continue };
+                if samples.aperture > 0.0 {
+                    let lens = warp::disc(sampler.pair(dimension::LENS));
+                    match samples.view.through_lens(&ray, samples.aperture, lens) {
+                        Some(bent) => ray = bent,
+                        None => continue,
+                    }
+                }
                 rays += 1;
                 let mut path = RayPath::primary(pixel as u32, sample);
                 if share.is_some_and(|share| sample >= share.chosen) {

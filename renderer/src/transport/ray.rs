@@ -8,6 +8,7 @@ use crate::film::{Layers, Plane};
 use crate::geometry;
 use crate::sample::PathKey;
 
+use super::air::Medium;
 use super::modulation::Choice;
 
 /// What a ray remembers of its path from the eye.
@@ -36,8 +37,8 @@ pub struct RayPath {
     pub choice: Choice,
     /// Length of the way since the last such event, up to the ray's origin.
     pub blind_distance: f32,
-    /// Extinction, per unit of length, of what the ray travels through.
-    pub extinction: Vec3,
+    /// What the ray travels through at its start.
+    pub medium: Medium,
 }
 
 impl RayPath {
@@ -56,7 +57,7 @@ impl RayPath {
             blind: false,
             choice: Choice::Chosen,
             blind_distance: 0.0,
-            extinction: Vec3::ZERO,
+            medium: Medium::default(),
         }
     }
 

@@ -9,6 +9,7 @@ use crate::geometry::SurfaceId;
 use crate::material::{GlossySampling, Lobe};
 use crate::sample::Sampler;
 
+use super::air::Medium;
 use super::bins::{RayBins, SpawnRecord};
 use super::dimension;
 use super::ray::RayPath;
@@ -88,6 +89,8 @@ pub(super) struct Departure<'a> {
     pub(super) weight: f32,
     /// Length of that way.
     pub(super) length: f64,
+    /// What it went through last.
+    pub(super) medium: Medium,
     /// The hit.
     pub(super) point: DVec3,
     /// What was hit.
@@ -165,7 +168,7 @@ impl Spawner<'_> {
             } else {
                 0.0
             },
-            extinction: lobe.medium.map_or(parent.extinction, |extinction| extinction.as_vec3()),
+            medium: lobe.medium.map_or(from.medium, Medium::solid),
             ..*parent
         };
         let record = SpawnRecord {

@@ -10,6 +10,7 @@ use crate::pattern::Memory;
 use crate::sample::Sampler;
 use crate::scene::Scene;
 
+use super::air::{Medium, Piece, was_in};
 use super::dimension;
 use super::direct::{Lit, Scratch};
 use super::look::{Look, Looker, far_away, place};
@@ -61,28 +62,29 @@ impl<'a> Tracer<'a> {
 impl Tracer<'_> {
     /// Traces a ray: adds what it brings to the planes, and puts what it spawns into the bins.
     pub(super) fn trace(&self, ray: &PathRay, sampler: &Sampler, scratch: &mut Scratch, spawner: &mut Spawner<'_>) {
-        let Some(meeting) = self.meet(ray, self.mixing(sampler), &mut scratch.memory) else { return };
-        let Meeting { hit, ray: last, length } = meeting;
+        let Scratch { memory, pieces, .. } = scratch;
+        let Some(meeting) = self.meet(ray, self.mixing(sampler), memory, pieces) else { return };
+        let Meeting { hit, ray: last, length, piece } = meeting;
         let path = &ray.path;
+        let before =
+            if self.scene.has_mist() { self.cross_air(ray, &piece, sampler, scratch, spawner) } else { Rgb::ONE };
         let Some((hit, look)) = hit else {
-            let ripple = ray.ripple * transmittance(path.extinction, f64::INFINITY);
+            let ripple = ray.ripple * before * transmittance(piece.medium.extinction, f64::INFINITY);
             return self.file(ray, ripple * self.escaped(ray, &last, scratch), spawner);
         };
         let (material, bend) = match &look {
             Look::Plain(material) => (*material, DVec3::ZERO),
             Look::Dressed(material, bend) => (material, *bend),
-            Look::Through | Look::Black => return,
+            Look::Through | Look::Black | Look::Mist(_) => return,
         };
 
         let front = hit.is_front(last.dir);
         // A ray that meets a solid's boundary from inside was in the solid, even if it started there (the eye).
-        let extinction = match material {
-            Material::Dielectric(dielectric) => {
-                dielectric.medium(front).map_or(path.extinction, |medium| medium.as_vec3())
-            }
-            _ => path.extinction,
+        let medium = match material {
+            Material::Dielectric(dielectric) => dielectric.medium(front).map_or(piece.medium, Medium::solid),
+            _ => piece.medium,
         };
-        let ripple = ray.ripple * transmittance(extinction, length);
+        let ripple = ray.ripple * before * transmittance(medium.extinction, piece.length);
         if ripple == Rgb::ZERO {
             return;
         }
@@ -94,9 +96,9 @@ impl Tracer<'_> {
             return;
         }
 
-        let absorbed = f64::from(extinction.min_element()) * length;
+        let absorbed = f64::from(medium.extinction.min_element()) * piece.length;
         let weight = if absorbed > WEIGHTY_ABSORPTION { path.weight * (-absorbed).exp() as f32 } else { path.weight };
-        let departure = Departure { path, ripple, weight, length, point: hit.point, surface: hit.surface };
+        let departure = Departure { path, ripple, weight, length, medium, point: hit.point, surface: hit.surface };
         let bent = (bend != DVec3::ZERO).then(|| Bend::new(last.dir, hit.normal, bend));
         let interaction = match bent {
             None => Interaction::new(last.dir, hit.normal),
@@ -113,7 +115,7 @@ impl Tracer<'_> {
                 (true, 0 | 1) => NEAR_TESTS,
                 _ => FAR_TESTS,
             };
-            Lit { scene: self.scene, aggregate: self.aggregate, start, extinction, tests }
+            Lit { scene: self.scene, aggregate: self.aggregate, start, medium, tests }
         };
         match material.respond(interaction) {
             None => {
@@ -134,7 +136,7 @@ impl Tracer<'_> {
     }
 
     /// Adds light to the plane that a ray's light belongs to.
-    fn file(&self, ray: &PathRay, light: Rgb, spawner: &mut Spawner<'_>) {
+    pub(super) fn file(&self, ray: &PathRay, light: Rgb, spawner: &mut Spawner<'_>) {
         // What every factor is bounded for (`docs/numerics.md`); should one not be, black is the lesser evil.
         debug_assert!(light.is_finite(), "{light} along {ray:?}");
         if light != Rgb::ZERO && light.is_finite() {
@@ -148,23 +150,45 @@ impl Tracer<'_> {
     }
 
     /// Follows a ray through surfaces that are not there for it; `u` in [0,1) chooses among mixed materials. `None` if nothing comes from where it ends.
-    pub(super) fn meet(&self, from: &PathRay, u: f64, memory: &mut Memory) -> Option<Meeting<'_>> {
+    /// `pieces` is cleared, and filled with the pieces of the way but the last if it crosses boundaries of mist.
+    pub(super) fn meet(
+        &self,
+        from: &PathRay,
+        u: f64,
+        memory: &mut Memory,
+        pieces: &mut Vec<Piece>,
+    ) -> Option<Meeting<'_>> {
+        pieces.clear();
         let mut ray = from.ray;
         let mut length = 0.0;
+        let mut piece = Piece { origin: ray.origin, dir: ray.dir, length: 0.0, medium: from.path.medium };
         // A straight line meets no shape more than twice.
         for _ in 0..=2 * self.aggregate.len() {
             let Some(hit) = self.aggregate.closest(&ray) else {
                 // A ray that an aft plane ends sees nothing behind it.
-                return ray.t_max.is_infinite().then_some(Meeting { hit: None, ray, length });
+                piece.length = f64::INFINITY;
+                return ray.t_max.is_infinite().then_some(Meeting { hit: None, ray, length, piece });
             };
             length += hit.t;
+            piece.length += hit.t;
             let looker = Looker { scene: self.scene, ray, blind: from.path.blind, u };
             match looker.look(&hit, memory) {
-                Look::Black => return None,
+                Look::Black if pieces.is_empty() && piece.medium.mists.is_empty() => return None,
+                Look::Mist(mist) => {
+                    let inwards = hit.is_front(ray.dir);
+                    if !inwards && !piece.medium.mists.contains(mist) {
+                        was_in(pieces, self.scene, mist);
+                        piece.medium = piece.medium.before(self.scene, mist, inwards);
+                    }
+                    pieces.push(piece);
+                    let medium = piece.medium.beyond(self.scene, mist, inwards);
+                    piece = Piece { origin: hit.point, dir: ray.dir, length: 0.0, medium };
+                    ray = Ray::new(hit.point, ray.dir).leaving(hit.surface).up_to(ray.t_max - hit.t);
+                }
                 Look::Through => {
                     ray = Ray::new(hit.point, ray.dir).leaving(hit.surface).up_to(ray.t_max - hit.t);
                 }
-                look => return Some(Meeting { hit: Some((hit, look)), ray, length }),
+                look => return Some(Meeting { hit: Some((hit, look)), ray, length, piece }),
             }
         }
         None
@@ -196,6 +220,8 @@ pub(super) struct Meeting<'a> {
     pub(super) hit: Option<(Hit, Look<'a>)>,
     /// The last piece of the ray.
     pub(super) ray: Ray,
-    /// Length of all pieces.
+    /// Length of the whole way.
     pub(super) length: f64,
+    /// The part of it in the last medium.
+    pub(super) piece: Piece,
 }

@@ -9,6 +9,7 @@ mod laws;
 mod lights;
 mod look;
 mod materials;
+mod media;
 mod pictures;
 mod places;
 mod random;
@@ -26,6 +27,7 @@ fn cases() -> Vec<Case> {
         chains::cases(),
         lights::cases(),
         materials::cases(),
+        media::cases(),
         views::cases(),
         input::cases(),
         pictures::cases(),

@@ -48,8 +48,11 @@ pub(crate) fn cases() -> Vec<Case> {
             ("a metre at 1e8", || at(1.0, [1e8, -1e8, 1e8], 4e-5)),
             // The last digit is a part in 700 of the lamp's radius.
             ("a centimetre at 1e8 loses digits, not light", || at(1e-2, [1e8, -1e8, 1e8], 1e-2)),
-            // 1e-11 of the coordinates is a millimetre: nothing is met within it.
-            ("half a millimetre at 1e8 lies within the window", || at(5e-4, [1e8, -1e8, 1e8], 1.0)),
+            // 1e-11 of the coordinates is a millimetre: nothing is met within it, and all beyond it.
+            ("half a millimetre at 1e8 lies within the window: nothing is met", || {
+                Row::same(0.0, floor(5e-4, [1e8, -1e8, 1e8]).red())
+            }),
+            ("four millimetres at 1e8 are met", || at(4e-3, [1e8, -1e8, 1e8], 1e-4)),
             ("a micrometre at 1", || at(1e-6, [1.0, 1.0, 1.0], 1e-6)),
             ("20 km of ground, a dome of 1e9, a metre of floor", || Row::near(0.5, mixed().red(), 2e-6)),
             ("a stone of 1 mm among them", || {

@@ -178,6 +178,8 @@ pub(crate) fn wild_scene(numbers: &mut Numbers) -> String {
         ("glow", "cccl"),
         ("spotlight", "cccalln"),
         ("illum", "ccc"),
+        ("mist", "cccffff"),
+        ("prism1", "cl"),
     ];
     let shapes = [
         ("polygon", "lllllllll"),
@@ -214,7 +216,12 @@ pub(crate) fn wild_scene(numbers: &mut Numbers) -> String {
         let (_, _, bits) = reals("");
         let (kind, form) = materials[(bits % materials.len() as u64) as usize];
         let (length, words, _) = reals(form);
-        text += &format!("void {kind} m{i} 0 0 {length} {words}\n");
+        let strings = match kind {
+            "mist" => "3 s0 s1 s2",
+            "prism1" => "5 A1 Dx+A2*Dz Dy Dz .",
+            _ => "0",
+        };
+        text += &format!("void {kind} m{i} {strings} 0 {length} {words}\n");
         let (_, _, bits) = reals("");
         let (kind, form) = shapes[(bits % shapes.len() as u64) as usize];
         let (length, words, _) = reals(form);

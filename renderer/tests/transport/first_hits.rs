@@ -17,7 +17,7 @@ window polygon pane.1 0 0 12  -3 3.5 -3  -3 3.5 3  3 3.5 3  3 3.5 -3
 ";
 
 fn samples(stage: &Stage, size: usize) -> Samples<'_> {
-    Samples { view: &stage.view, width: size, height: size, jitter: 1.0 }
+    Samples { view: &stage.view, width: size, height: size, jitter: 1.0, aperture: 0.0 }
 }
 
 #[test]

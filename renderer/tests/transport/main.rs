@@ -9,6 +9,7 @@ mod execution;
 mod first_hits;
 mod furnace;
 mod limited;
+mod media;
 mod modulated;
 mod recursive;
 

@@ -37,7 +37,16 @@ fn rows(name: &str) -> impl Iterator<Item = (String, Vec<f64>)> {
 
 /// The picture `name` of `pictures.csv`.
 pub(crate) fn picture(name: &str) -> Picture {
-    let (_, mut cells) = rows("pictures.csv").find(|(row, _)| row == name).expect("the table holds the picture");
+    picture_of("pictures.csv", name)
+}
+
+/// The picture `name` of `rendered.csv`.
+pub(crate) fn rendered(name: &str) -> Picture {
+    picture_of("rendered.csv", name)
+}
+
+fn picture_of(table: &str, name: &str) -> Picture {
+    let (_, mut cells) = rows(table).find(|(row, _)| row == name).expect("the table holds the picture");
     let block_noise = cells.remove(0);
     assert_eq!(cells.len(), GRID * GRID);
     Picture { block_noise, blocks: cells }

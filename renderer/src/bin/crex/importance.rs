@@ -222,7 +222,7 @@ fn task_map(
     let scene = &place.scene;
     let counts = task_surfaces(scene, &args.task)?;
     let aggregate = scene.aggregate();
-    let samples = Samples { view: &place.view, width, height, jitter: 1.0 };
+    let samples = Samples { view: &place.view, width, height, jitter: 1.0, aperture: 0.0 };
     let tracer = Tracer::new(scene, &aggregate);
     let objects = tracer.pixels_showing(&samples, RAYS_A_SIDE, |surface| counts[surface.index()]);
     let shown = objects.values().iter().filter(|&&shows| shows).count();

@@ -25,6 +25,7 @@ pub(crate) struct RadianceOptions {
     pub(crate) pixel_aspect: f64,
     /// `-pj`.
     pub(crate) pixel_jitter: f64,
+    pub(crate) aperture: f64,
     /// `-ab`.
     pub(crate) diffuse: Option<u32>,
     /// `-ad`.
@@ -59,6 +60,7 @@ impl Default for RadianceOptions {
             size: [512, 512],
             pixel_aspect: 1.0,
             pixel_jitter: 1.0,
+            aperture: 0.0,
             diffuse: None,
             diffuse_rays: 1,
             ambient: [0.0; 3],
@@ -245,6 +247,7 @@ impl RadianceOptions {
             "-x" => self.size[0] = count,
             "-y" => self.size[1] = count,
             "-pa" => self.pixel_aspect = at_least(0.0)?,
+            "-pd" => self.aperture = at_least(0.0)?,
             "-pj" => self.pixel_jitter = at_least(0.0)?.min(1.0),
             "-ab" => self.diffuse = Some(count),
             "-ad" => self.diffuse_rays = count,

@@ -70,7 +70,7 @@ pub(crate) const SPELLINGS: &[Spelling] = &[
     works("-pj", Numbers(1), "part of a pixel over which its samples spread (1)"),
     fixed("-ps", Count(1), 1.0, "every pixel is sampled", "pixel sampling"),
     fixed("-pt", Numbers(1), 0.0, "every pixel is sampled", "threshold of the pixel sampling"),
-    fixed("-pd", Numbers(1), 0.0, "there is no depth of field", "depth of field"),
+    works("-pd", Numbers(1), "diameter of the lens, which is in focus at the length of -vd (0)"),
     works("-ab", Count(0), "most diffuse events of a path (unlimited: the crex says which run)"),
     works("-ad", Count(0), "diffuse rays at a primary hit (1)"),
     fixed("-aa", Numbers(1), 0.0, "there is no ambient cache", "accuracy of the ambient cache"),

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::Reporter;
 use super::fields::{self, Sources};
+use super::spectra;
 use crate::pattern::Step;
 use crate::rad::{Argument, Class, Kind, Primitive};
 
@@ -77,6 +78,9 @@ pub(super) fn step(
             Some(Step::Blend { part, fore, back })
         }
         Class::Texture => fields::read(primitive, sources, reporter).map(Step::Bend),
+        _ if matches!(primitive.kind, Kind::Spectrum | Kind::Specfile) => {
+            spectra::fixed(primitive, sources, reporter).map(Step::Fixed)
+        }
         _ => {
             let field = fields::read(primitive, sources, reporter)?;
             Some(Step::Tint(field))

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::Reporter;
 use super::files::Shelf;
+use super::{Reporter, spectra};
 use crate::math::Similarity;
 use crate::pattern::{Applied, Field, Library, Source, Spacing, Table, Text};
 use crate::rad::{Argument, Kind, Primitive, Transform};
@@ -42,6 +42,7 @@ fn field(primitive: &Primitive, sources: &mut Sources<'_, '_>) -> Result<Field, 
         Kind::Mixdata => data(primitive, 2, 1, sources),
         Kind::Colorpict => picture(primitive, 0, 3, sources),
         Kind::Mixpict => picture(primitive, 2, 1, sources),
+        Kind::Specfunc | Kind::Specdata => spectra::varying(primitive, sources),
         Kind::Brighttext => text(primitive, 0, Some(1), sources),
         Kind::Colortext => text(primitive, 0, Some(3), sources),
         Kind::Mixtext => text(primitive, 2, None, sources),

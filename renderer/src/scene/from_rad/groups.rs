@@ -9,9 +9,10 @@ use super::{Builder, Reporter};
 use crate::geometry::shape::{Placed, Triangle};
 use crate::geometry::{Aggregate, Item, Passage, Shape, SurfaceId};
 use crate::material::MaterialId;
-use crate::math::Similarity;
+use crate::math::{Frame, Similarity};
 use crate::rad::{self, Argument, Class, Document, Kind, Primitive, Transform};
 use crate::scene::group::{Content, Group, Inner, Triangles};
+use crate::scene::light::clip_ears;
 
 /// Instances within instances, at most: a ray's way into them takes time in proportion to 2^depth.
 const MOST_NESTED: usize = 8;
@@ -37,7 +38,7 @@ pub(super) struct Ready {
 
 impl Builder<'_> {
     /// Adds an instance or a mesh.
-    pub(super) fn add_group(&mut self, primitive: &Primitive, over: Option<MaterialId>) {
+    pub(super) fn add_group(&mut self, index: usize, primitive: &Primitive, over: Option<MaterialId>) {
         let Some((file, words)) = primitive.strings.split_first() else {
             let message = format!("{} `{}` names no file", primitive.kind, primitive.name);
             self.reporter.error(primitive, Argument::Kind, message);
@@ -55,7 +56,11 @@ impl Builder<'_> {
                 return;
             }
         };
-        let Some(ready) = self.ready(primitive, file) else { return };
+        // The materials that an object names are the scene's; one of the mesh's own replaces them all.
+        let named = primitive.kind == Kind::Mesh && file.ends_with(".obj");
+        let ready =
+            if named { self.object_ready(index, primitive, file, over.is_none()) } else { self.ready(primitive, file) };
+        let Some(ready) = ready else { return };
         let room = u32::MAX - self.groups.taken;
         let own = u32::try_from(self.scene.surfaces.len()).unwrap_or(u32::MAX);
         if ready.count > room.saturating_sub(own) {
@@ -75,6 +80,26 @@ impl Builder<'_> {
         let shape = Shape::Placed(Placed::new(ready.aggregate, to_scene, first, ready.bounds));
         let surface = self.surface(primitive, None, shape);
         self.scene.surfaces.push(surface);
+    }
+
+    /// What a Wavefront object holds, with the scene's materials or without any.
+    fn object_ready(&mut self, index: usize, primitive: &Primitive, file: &str, named: bool) -> Option<Ready> {
+        let key = format!("{file}\n{named}");
+        if let Some(known) = self.named.get(&key) {
+            return known.clone();
+        }
+        let ready = match self.materials.shelf.find(file, &self.document.folders) {
+            Ok(found) => match rad::read_obj(&rad::Source::from(found)) {
+                Ok(obj) => self.object(index, primitive, &obj, named),
+                Err(error) => self.told(vec![error]),
+            },
+            Err(why) => {
+                self.reporter.error(primitive, Argument::String(0), format!("the file `{file}` {why}"));
+                None
+            }
+        };
+        self.named.insert(key, ready.clone());
+        ready
     }
 
     /// What a file holds, read when it is first needed.
@@ -197,40 +222,105 @@ impl Builder<'_> {
         Some(Ready { content: Arc::new(content), aggregate: Arc::new(aggregate), bounds, count })
     }
 
+    /// A Wavefront object: faces of more than three vertices are cut into triangles.
+    fn object(&mut self, index: usize, primitive: &Primitive, obj: &rad::Obj, named: bool) -> Option<Ready> {
+        let mut materials = vec![None; obj.materials.len()];
+        for (material, name) in materials.iter_mut().zip(&obj.materials).filter(|_| named) {
+            let Some(modifier) = self.document.modifier_named(name, index) else {
+                let message = format!(
+                    "the mesh `{}` is made of `{name}`: expected a material of that name before it, or one of its own in place \
+                     of `void`",
+                    primitive.name
+                );
+                self.reporter.error(primitive, Argument::String(0), message);
+                return None;
+            };
+            *material = self.materials.of_modifier(modifier, index, &mut self.scene, &mut self.reporter);
+        }
+        let content = empty(&obj.vertices);
+        let mut mesh = Meshed { content, items: Vec::new() };
+        for face in &obj.faces {
+            let material = face.material.and_then(|index| materials[index]);
+            let corners: Vec<DVec3> =
+                face.vertices.iter().map(|&vertex| mesh.content.positions[vertex as usize]).collect();
+            for triangle in cut(&corners) {
+                mesh.add(triangle.map(|corner| face.vertices[corner]), material)?;
+            }
+        }
+        mesh.ready()
+    }
+
     fn mesh(&mut self, mesh: &rad::Mesh) -> Option<Ready> {
         let mut reporter = Reporter::new(&mesh.materials);
         let mut materials = self.materials.another();
         let mut built =
             |index: usize, scene: &mut crate::scene::Scene| materials.of_modifier(index, index, scene, &mut reporter);
-        let positions: Vec<DVec3> = mesh.vertices.iter().map(|vertex| DVec3::from(vertex.position)).collect();
-        let mut content = Triangles {
-            normals: mesh.vertices.iter().map(|vertex| vertex.normal.map(DVec3::from)).collect(),
-            uvs: mesh.vertices.iter().map(|vertex| vertex.uv).collect(),
-            positions,
-            triangles: Vec::new(),
-            materials: Vec::new(),
-        };
-        let mut items = Vec::new();
+        let mut meshed = Meshed { content: empty(&mesh.vertices), items: Vec::new() };
         for triangle in &mesh.triangles {
-            let corners = triangle.vertices.map(|vertex| content.positions[vertex as usize]);
-            // Triangles without area are not there.
-            let Ok(shape) = Triangle::new(corners) else { continue };
-            let surface = SurfaceId(u32::try_from(items.len()).ok()?);
-            let (shape, passage) = (Shape::Triangle(shape), Passage::Opaque);
-            items.push(Item { shape, surface, passage, precedence: 0 });
-            content.triangles.push(triangle.vertices);
-            content.materials.push(triangle.material.and_then(|index| built(index, &mut self.scene)));
+            let material = triangle.material.and_then(|index| built(index, &mut self.scene));
+            meshed.add(triangle.vertices, material)?;
         }
         self.scene.table_bytes += materials.shelf.bytes();
         let errors = reporter.errors;
         if !errors.is_empty() {
             return self.told(errors);
         }
-        let count = u32::try_from(items.len()).ok()?;
-        let bounds = bounds(items.iter().map(|item| item.shape.bounds()));
-        let aggregate = Arc::new(Aggregate::new(items));
-        Some(Ready { content: Arc::new(Content::Mesh(content)), aggregate, bounds, count })
+        meshed.ready()
     }
+}
+
+/// A mesh of these vertices, without triangles yet.
+fn empty(vertices: &[rad::MeshVertex]) -> Triangles {
+    Triangles {
+        positions: vertices.iter().map(|vertex| DVec3::from(vertex.position)).collect(),
+        normals: vertices.iter().map(|vertex| vertex.normal.map(DVec3::from)).collect(),
+        uvs: vertices.iter().map(|vertex| vertex.uv).collect(),
+        triangles: Vec::new(),
+        materials: Vec::new(),
+    }
+}
+
+/// A mesh that is being put together.
+struct Meshed {
+    content: Triangles,
+    items: Vec<Item>,
+}
+
+impl Meshed {
+    /// Adds a triangle; `None` if there are too many.
+    fn add(&mut self, vertices: [u32; 3], material: Option<MaterialId>) -> Option<()> {
+        let corners = vertices.map(|vertex| self.content.positions[vertex as usize]);
+        // Triangles without area are not there.
+        let Ok(shape) = Triangle::new(corners) else { return Some(()) };
+        let surface = SurfaceId(u32::try_from(self.items.len()).ok()?);
+        let (shape, passage) = (Shape::Triangle(shape), Passage::Opaque);
+        self.items.push(Item { shape, surface, passage, precedence: 0 });
+        self.content.triangles.push(vertices);
+        self.content.materials.push(material);
+        Some(())
+    }
+
+    fn ready(self) -> Option<Ready> {
+        let count = u32::try_from(self.items.len()).ok()?;
+        let bounds = bounds(self.items.iter().map(|item| item.shape.bounds()));
+        let aggregate = Arc::new(Aggregate::new(self.items));
+        Some(Ready { content: Arc::new(Content::Mesh(self.content)), aggregate, bounds, count })
+    }
+}
+
+/// The triangles of a face. One that crosses itself, or has very many corners, is a fan around its first corner.
+fn cut(corners: &[DVec3]) -> Vec<[usize; 3]> {
+    if corners.len() == 3 {
+        return vec![[0, 1, 2]];
+    }
+    // Newell's normal, as long as twice the area.
+    let next = corners.iter().cycle().skip(1);
+    let normal: DVec3 = corners.iter().zip(next).map(|(a, b)| (*a - corners[0]).cross(*b - corners[0])).sum();
+    let fan = || (2..corners.len()).map(|last| [0, last - 1, last]).collect();
+    let Some(normal) = normal.try_normalize() else { return fan() };
+    let frame = Frame::around(normal);
+    let outline: Vec<_> = corners.iter().map(|&corner| frame.to_local(corner - corners[0]).truncate()).collect();
+    clip_ears(&outline).unwrap_or_else(fan)
 }
 
 fn bounds(all: impl Iterator<Item = [DVec3; 2]>) -> [DVec3; 2] {

@@ -9,13 +9,14 @@ use super::files::Shelf;
 use super::programs;
 use crate::material::{
     Alternate, AntimatterId, ArgumentError, Dielectric, DressId, Emitter, Glass, Material, MaterialId, Metal, Mirror,
-    Plastic, ProgramId, Trans,
+    MistId, Plastic, ProgramId, Trans,
 };
 use crate::pattern::Step;
 use crate::rad::{self, Argument, Class, Files, Kind, Primitive};
 use crate::scene::Scene;
 use crate::scene::antimatter::Antimatter;
 use crate::scene::dress::{Base, Dress, MOST_LAYERS};
+use crate::scene::mist::MOST_MISTS;
 
 /// The materials that were built, by their place in the document.
 pub(super) struct Materials<'a> {
@@ -24,6 +25,8 @@ pub(super) struct Materials<'a> {
     layers: HashMap<usize, usize>,
     /// Antimatter primitives.
     pub(super) antimatters: Vec<(usize, AntimatterId)>,
+    /// Mist primitives.
+    pub(super) mists: Vec<usize>,
     pub(super) shelf: Shelf<'a>,
 }
 
@@ -44,7 +47,13 @@ fn class_word(primitive: &Primitive) -> &'static str {
 
 impl<'a> Materials<'a> {
     pub(super) fn new(files: &'a dyn Files) -> Self {
-        Self { built: HashMap::new(), layers: HashMap::new(), antimatters: Vec::new(), shelf: Shelf::new(files) }
+        Self {
+            built: HashMap::new(),
+            layers: HashMap::new(),
+            antimatters: Vec::new(),
+            mists: Vec::new(),
+            shelf: Shelf::new(files),
+        }
     }
 
     /// For another document, with the same files.
@@ -95,9 +104,11 @@ impl<'a> Materials<'a> {
                     scene.antimatters.push(Antimatter::new(over));
                     self.antimatters.push((index, id));
                     Material::Antimatter(id)
+                } else if primitive.kind == Kind::Mist {
+                    Material::Mist(self.mist(index, scene, reporter)?)
                 } else if programs::is_programmed(primitive.kind) {
-                    let program =
-                        self.with_sources(scene, document, |sources| programs::read(primitive, sources, reporter))?;
+                    let program = self
+                        .with_sources(scene, document, |sources| programs::read(index, primitive, sources, reporter))?;
                     let id = ProgramId(u32::try_from(scene.programs.len()).ok()?);
                     scene.programs.push(program);
                     Material::Programmed(id)
@@ -169,6 +180,15 @@ impl<'a> Materials<'a> {
         reporter: &mut Reporter,
     ) -> Option<MaterialId> {
         let primitive = &reporter.document.primitives[index];
+        let sides = match &base {
+            Base::Material(base) => [Some(*base), None],
+            Base::Mixture { fore, back, .. } => [*fore, *back],
+        };
+        if sides.into_iter().flatten().any(|base| matches!(scene.materials[base.index()], Material::Mist(_))) {
+            let message = format!("`{}`: patterns and mixtures of mist are not supported", primitive.name);
+            reporter.error(primitive, Argument::Kind, message);
+            return None;
+        }
         if layers >= MOST_LAYERS {
             let message = format!("mixtures within mixtures, more than {MOST_LAYERS} deep");
             reporter.error(primitive, Argument::Kind, message);
@@ -179,6 +199,17 @@ impl<'a> Materials<'a> {
         scene.dresses.push(Dress { steps: steps.into(), base });
         scene.library.get_or_insert_default();
         add(scene, Material::Dressed(id), user, reporter)
+    }
+
+    fn mist(&mut self, index: usize, scene: &mut Scene, reporter: &mut Reporter) -> Option<MistId> {
+        let primitive = &reporter.document.primitives[index];
+        let added = scene.add_mist(&primitive.reals, &primitive.strings);
+        let added = added.map_err(|error| report_argument(primitive, &error, reporter)).ok()?;
+        if added.is_none() {
+            reporter.error(primitive, Argument::Kind, format!("the scene has more than {MOST_MISTS} kinds of mist"));
+        }
+        self.mists.push(index);
+        added
     }
 
     /// Hands out what fields are read with.

@@ -11,6 +11,8 @@ mod groups;
 mod materials;
 mod programs;
 mod shapes;
+mod spectra;
+mod wgmd;
 
 use std::collections::HashMap;
 
@@ -85,6 +87,7 @@ impl Scene {
             }
         }
         builder.cut();
+        builder.name_scattered_lights();
         let Builder { reporter, mut scene, materials, .. } = builder;
         if !reporter.errors.is_empty() {
             return Err(reporter.errors);
@@ -120,7 +123,7 @@ impl Builder<'_> {
         };
         match primitive.kind {
             Kind::Source => self.add_far(primitive, material),
-            Kind::Instance | Kind::Mesh => self.add_group(primitive, material),
+            Kind::Instance | Kind::Mesh => self.add_group(index, primitive, material),
             _ => {
                 if let Some(shape) = shapes::read(primitive, &mut self.reporter) {
                     self.add_shape(primitive, material, shape);
@@ -141,10 +144,10 @@ impl Builder<'_> {
             let light = Light::of_surface(id, &shape, *emitter).dressed(dress);
             self.scene.lights.push(light);
         }
-        let mirror = material.is_some_and(|id| self.scene.mirror(id).is_some());
-        if mirror && !shape.is_flat() {
+        let relays = material.is_some_and(|id| self.scene.mirror(id).is_some() || self.scene.prism(id).is_some());
+        if relays && !shape.is_flat() {
             let message = format!(
-                "mirror `{}` is curved, so it reflects what is seen but casts no light; only polygons and rings do",
+                "mirror or prism `{}` is curved, so it shows what is behind it but relays no light; only polygons and rings do",
                 primitive.name
             );
             self.reporter.warn(primitive, Argument::Kind, message);
@@ -161,6 +164,20 @@ impl Builder<'_> {
             name: self.scene.names.id(&primitive.name),
             modifier: primitive.modifier.map(|index| self.scene.names.id(&self.document.primitives[index].name)),
             precedence: primitive.modifier.and_then(|index| u32::try_from(index + 1).ok()).unwrap_or(0),
+        }
+    }
+
+    /// Warns of lights that mists name and that are not there.
+    fn name_scattered_lights(&mut self) {
+        for index in std::mem::take(&mut self.materials.mists) {
+            let primitive = &self.document.primitives[index];
+            for (at, path) in primitive.strings.iter().enumerate() {
+                if !self.scene.is_light(path) {
+                    let message =
+                        format!("mist `{}` scatters no light of `{path}`: there is no such light", primitive.name);
+                    self.reporter.warn(primitive, Argument::String(at), message);
+                }
+            }
         }
     }
 

@@ -1,12 +1,12 @@
-//! Materials with functions: `plastic2` and kin, `ashik2`, `plasfunc` and kin, `BRTDfunc` (reference manual, 2.1.2).
+//! Materials with functions: `plastic2` and kin, `ashik2`, `plasfunc` and kin, `BRTDfunc`, prisms (reference manual, 2.1.2).
 
-use super::Reporter;
 use super::fields::{self, Sources, Wrong};
+use super::{Reporter, wgmd};
 use crate::color::Rgb;
 use crate::material::{Anisotropic, ArgumentError, Ashikhmin, Gloss};
-use crate::pattern::{Form, Law};
+use crate::pattern::{Form, Law, Source};
 use crate::rad::{Argument, Kind, Primitive};
-use crate::scene::program::Program;
+use crate::scene::program::{Program, Way};
 
 /// Whether a material asks functions what it is.
 pub(super) fn is_programmed(kind: Kind) -> bool {
@@ -23,11 +23,22 @@ pub(super) fn is_programmed(kind: Kind) -> bool {
             | Kind::Metdata
             | Kind::Transdata
             | Kind::BrtdFunc
+            | Kind::Prism1
+            | Kind::WgmdFunc
+            | Kind::Prism2
     )
 }
 
 /// Such a material; `None` if it is wrong (with an error).
-pub(super) fn read(primitive: &Primitive, sources: &mut Sources<'_, '_>, reporter: &mut Reporter) -> Option<Program> {
+pub(super) fn read(
+    index: usize,
+    primitive: &Primitive,
+    sources: &mut Sources<'_, '_>,
+    reporter: &mut Reporter,
+) -> Option<Program> {
+    if primitive.kind == Kind::WgmdFunc {
+        return wgmd::read(index, primitive, sources, reporter).map(|parts| Program::Wgmd(Box::new(parts)));
+    }
     match program(primitive, sources) {
         Ok(program) => Some(program),
         Err((argument, message)) => {
@@ -57,13 +68,15 @@ fn program(primitive: &Primitive, sources: &mut Sources<'_, '_>) -> Result<Progr
             let material = Ashikhmin::from_reals(reals).map_err(argument)?;
             Ok(Program::Ashikhmin(material, fields::functions(primitive, 0, 3, sources)?))
         }
+        Kind::Prism1 => prism(primitive, 1, sources),
+        Kind::Prism2 => prism(primitive, 2, sources),
         Kind::BrtdFunc => free(primitive, sources),
         _ => parts(primitive, sources),
     }
 }
 
 /// Real arguments that must be there and in [0, most].
-fn within(primitive: &Primitive, count: usize, most: impl Fn(usize) -> f64) -> Result<(), Wrong> {
+pub(super) fn within(primitive: &Primitive, count: usize, most: impl Fn(usize) -> f64) -> Result<(), Wrong> {
     let reals = &primitive.reals;
     if reals.len() < count {
         return Err((Argument::Kind, format!("expected {count} or more real arguments, found {}", reals.len())));
@@ -77,7 +90,7 @@ fn within(primitive: &Primitive, count: usize, most: impl Fn(usize) -> f64) -> R
     }
 }
 
-fn color(reals: &[f64], at: usize) -> Rgb {
+pub(super) fn color(reals: &[f64], at: usize) -> Rgb {
     Rgb::from_slice(&reals[at..at + 3])
 }
 
@@ -115,13 +128,26 @@ fn parts(primitive: &Primitive, sources: &mut Sources<'_, '_>) -> Result<Program
     })
 }
 
+/// For each way a coefficient and a direction, then the function file.
+fn prism(primitive: &Primitive, ways: usize, sources: &mut Sources<'_, '_>) -> Result<Program, Wrong> {
+    let file = fields::function_file(primitive, 4 * ways, sources)?;
+    let ways = (0..ways).map(|way| {
+        let mut field = |from, count| {
+            let expressions = fields::expressions(primitive, from, count, file, sources)?;
+            fields::finished(primitive, Source::Functions(expressions), 4 * ways + 1)
+        };
+        Ok(Way { coefficient: field(4 * way, 1)?, direction: field(4 * way + 1, 3)? })
+    });
+    ways.collect::<Result<Vec<_>, Wrong>>().map(Program::Prism)
+}
+
 fn free(primitive: &Primitive, sources: &mut Sources<'_, '_>) -> Result<Program, Wrong> {
     within(primitive, 9, |_| f64::MAX)?;
     let reals = &primitive.reals;
     let file = fields::function_file(primitive, 9, sources)?;
     let field = |from: usize, sources: &mut Sources<'_, '_>| -> Result<_, Wrong> {
         let expressions = fields::expressions(primitive, from, 3, file, sources)?;
-        fields::finished(primitive, crate::pattern::Source::Functions(expressions), 10)
+        fields::finished(primitive, Source::Functions(expressions), 10)
     };
     let (mirrored, passed) = (field(0, sources)?, field(3, sources)?);
     let mut functions = [None; 3];

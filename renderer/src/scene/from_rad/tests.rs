@@ -84,7 +84,24 @@ grey cylinder stub 0 0 7 1 2 3 1 2 3 1\n  grey ring gap 0 0 8 0 0 0 0 0 1 1 1\ng
 #[test]
 fn errors_have_places() {
     let table = [
-        ("void mist fog 0 0 0\nfog sphere s 0 0 4 0 0 0 1", "1:6", "`mist` is not supported yet"),
+        ("void BSDF b 6 0 b.xml 0 0 1 . 0 0\nb sphere s 0 0 4 0 0 0 1", "1:6", "`BSDF` is not supported yet"),
+        ("void mist fog 0 0 6 1 1 1 2 1 1\nfog sphere s 0 0 4 0 0 0 1", "1:27", "fraction from 0 to 1"),
+        (
+            "void mist fog 0 0 0\nvoid brightfunc f 2 Px . 0 0\nf mist fog 0 0 0\nfog sphere s 0 0 4 0 0 0 1",
+            "3:3",
+            "not supported",
+        ),
+        ("void prism1 p 5 a Dx Dy Dz . 0 0\np sphere s 0 0 4 0 0 0 1", "1:17", "variable `a` is not defined"),
+        (
+            "void WGMDfunc w 13 nix 1 1 1 void 0 0 0 void 0 0 1 . 0 9 0 0 0 0 0 0 0 0 0\nw sphere s 0 0 4 0 0 0 1",
+            "1:20",
+            "`nix`",
+        ),
+        (
+            "void spectrum s 0 0 5 400 700 1 -1 1\ns plastic p 0 0 5 1 1 1 0 0\np sphere b 0 0 4 0 0 0 1",
+            "1:6",
+            "a value is -1",
+        ),
         ("void plastic2 p 4 1 0 0 . 0 6 1 1 1 0 .1 0\np sphere s 0 0 4 0 0 0 1", "1:42", "v-roughness"),
         (
             "void brightfunc dots 2 dots . 0 0\ndots plastic p 0 0 5 1 1 1 0 0\np sphere s 0 0 4 0 0 0 1",
@@ -221,7 +238,9 @@ fn mirrors_relay_once_unless_told_otherwise() {
     let mut scene = build(&text).unwrap();
     assert_eq!(
         warnings(&scene),
-        ["6:11 mirror `ball` is curved, so it reflects what is seen but casts no light; only polygons and rings do"]
+        [
+            "6:11 mirror or prism `ball` is curved, so it shows what is behind it but relays no light; only polygons and rings do"
+        ]
     );
     let relays = |scene: &Scene| scene.lights.iter().map(|light| light.relay().len()).collect::<Vec<_>>();
     assert_eq!(relays(&scene), [0, 1, 1]);

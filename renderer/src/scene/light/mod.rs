@@ -8,6 +8,7 @@
 mod patch;
 mod relay;
 mod sampler;
+mod turn;
 
 use glam::DVec3;
 
@@ -16,15 +17,16 @@ use crate::color::Rgb;
 use crate::geometry::{Shape, SurfaceId};
 use crate::material::{DressId, Emitter, EmitterKind};
 
+pub(super) use patch::clip_ears;
 pub use relay::Leg;
-use relay::Plane;
-pub(super) use relay::relayed;
+pub(super) use relay::{Sheet, relayed};
 use sampler::Sampler;
+use turn::Turn;
 
 /// Where a sample's solid angle saturates, sr.
 const MOST_SOLID_ANGLE: f64 = 1e30;
 
-/// A light source, or the image of one in mirrors.
+/// A light source, or the image of one in mirrors and prisms.
 #[derive(Clone, Debug)]
 pub struct Light {
     source: SourceId,
@@ -32,17 +34,17 @@ pub struct Light {
     /// Its patterns.
     dress: Option<DressId>,
     sampler: Sampler,
-    /// The mirrors between a lit point and the source, nearest to the point first.
+    /// The mirrors and prisms between a lit point and the source, nearest to the point first.
     relay: Vec<SurfaceId>,
-    planes: Vec<Plane>,
+    turns: Vec<Turn>,
 }
 
 /// A direction from which a light shines on a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
-    /// Unit vector from the point towards the light (towards its image, if mirrors relay it).
+    /// Unit vector from the point towards the light (towards its image, if mirrors or prisms relay it).
     pub dir: DVec3,
-    /// Length of the way to the light, over all mirrors; infinite for distant sources.
+    /// Length of the way to the light, over all mirrors (through prisms: to its image); infinite for distant sources.
     pub distance: f64,
     /// Steradians for which the sample stands: one over its density, with a spotlight's loss over its focal length.
     pub solid_angle: f64,
@@ -54,20 +56,13 @@ impl Light {
     /// A light of a surface's shape.
     pub(super) fn of_surface(surface: SurfaceId, shape: &Shape, emitter: Emitter) -> Self {
         let sampler = Sampler::of_shape(shape);
-        Self {
-            source: SourceId::Surface(surface),
-            emitter,
-            dress: None,
-            sampler,
-            relay: Vec::new(),
-            planes: Vec::new(),
-        }
+        Self { source: SourceId::Surface(surface), emitter, dress: None, sampler, relay: Vec::new(), turns: Vec::new() }
     }
 
     /// A distant light, `versine` being 1 - cosine of its half angle.
     pub(super) fn distant(source: SourceId, axis: DVec3, versine: f64, emitter: Emitter) -> Self {
         let sampler = Sampler::Distant { axis, versine };
-        Self { source, emitter, dress: None, sampler, relay: Vec::new(), planes: Vec::new() }
+        Self { source, emitter, dress: None, sampler, relay: Vec::new(), turns: Vec::new() }
     }
 
     /// The same light with patterns.
@@ -87,7 +82,7 @@ impl Light {
         self.source
     }
 
-    /// The mirrors that light meets on its way, the one nearest to the lit point first; empty for the source itself.
+    /// The mirrors and prisms that light meets on its way, the one nearest to the lit point first; empty for the source itself.
     #[must_use]
     pub fn relay(&self) -> &[SurfaceId] {
         &self.relay
@@ -105,14 +100,16 @@ impl Light {
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<LightSample> {
         // What mirrors show at `from` is what is there at its image behind them.
         let mut image = from;
-        for plane in &self.planes {
-            image = plane.reflect_point_in_front(image)?;
+        for turn in &self.turns {
+            image = turn.unturned(image)?;
         }
         let mut sample = self.sampler.sample(image, u)?;
+        let towards_light = sample.dir;
+        self.relay_sample(&mut sample, from, image)?;
         match self.emitter.kind() {
             EmitterKind::Glow { radius } if self.sampler.reach(image, &sample) > radius => return None,
             EmitterKind::Spot(spot) => {
-                if !spot.contains(-sample.dir) {
+                if !spot.contains(-towards_light) {
                     return None;
                 }
                 if sample.distance.is_finite() {
@@ -121,9 +118,6 @@ impl Light {
                 }
             }
             _ => {}
-        }
-        for plane in self.planes.iter().rev() {
-            sample.dir = plane.reflect_direction(sample.dir);
         }
         (sample.solid_angle > 0.0 && sample.solid_angle.is_finite()).then_some(LightSample {
             dir: sample.dir,

@@ -80,6 +80,23 @@ impl Patch {
         }
     }
 
+    /// Its middle: the centre of its area (of a boxed outline, of the box).
+    pub(super) fn middle(&self) -> DVec3 {
+        match self {
+            Self::Parallelogram([corner, along, up]) => *corner + (*along + *up) * 0.5,
+            Self::Triangles(triangles) => {
+                let mut before = 0.0;
+                let weighted = triangles.iter().map(|&([a, b, c], covered)| {
+                    let share = covered - std::mem::replace(&mut before, covered);
+                    (a + b + c) * (share / 3.0)
+                });
+                weighted.sum()
+            }
+            Self::Boxed { corner, edges: [along, up], .. } => *corner + (*along + *up) * 0.5,
+            Self::Ring { centre, .. } => *centre,
+        }
+    }
+
     /// A point, uniform over [`Self::area`]; `None` where the shape is not.
     pub(super) fn point(&self, u: [f64; 2]) -> Option<DVec3> {
         match self {
@@ -139,7 +156,7 @@ const MOST_CORNERS: usize = 1000;
 /// Triangles of a counter-clockwise outline that may be concave and have holes by seams: cuts off one corner after the other
 /// that holds no other vertex (Meisters, "Polygons Have Ears", 1975). `None` if no corner is left to cut: the outline crosses itself; or if
 /// there are more than [`MOST_CORNERS`].
-fn clip_ears(outline: &[DVec2]) -> Option<Vec<[usize; 3]>> {
+pub(in crate::scene) fn clip_ears(outline: &[DVec2]) -> Option<Vec<[usize; 3]>> {
     if outline.len() > MOST_CORNERS {
         return None;
     }

@@ -43,6 +43,24 @@ impl Sampler {
         }
     }
 
+    /// The middle of a light that is a surface.
+    pub(super) fn centre(&self) -> DVec3 {
+        match self {
+            Self::Flat { patch, .. } => patch.middle(),
+            Self::Sphere(sphere) => sphere.centre(),
+            Self::Cone(cone) => {
+                let (base, axis) = cone.axis();
+                base + axis * (0.5 * cone.length())
+            }
+            Self::Distant { .. } => DVec3::ZERO,
+        }
+    }
+
+    /// The unit normal of a flat light.
+    pub(super) fn normal(&self) -> Option<DVec3> {
+        if let Self::Flat { normal, .. } = self { Some(*normal) } else { None }
+    }
+
     pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<Sample> {
         match self {
             Self::Flat { patch, area, normal } => towards(from, patch.point(u)?, *normal, *area),

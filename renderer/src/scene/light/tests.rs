@@ -10,6 +10,7 @@ use super::*;
 use crate::geometry::Ray;
 use crate::geometry::shape::{Cone, Polygon, Ring, Sphere, Triangle};
 use crate::material::{Alternate, Mirror};
+use crate::pattern::Memory;
 use crate::scene::{FarId, Scene, Surface};
 
 const SAMPLES: u32 = 100_000;
@@ -269,17 +270,17 @@ fn a_mirror_shows_the_light_behind_it() {
     let mut through = 0;
     for _ in 0..1000 {
         let sample = image.sample(from, [number(), number()]).unwrap();
-        if !image.legs(&scene, Ray::new(from, DVec3::X), &sample, &mut legs) {
+        if !image.legs(&scene, Ray::new(from, DVec3::X), &sample, &mut Memory::default(), &mut legs) {
             continue;
         }
         through += 1;
         let [to_mirror, to_lamp] = legs[..] else { panic!("two legs") };
-        let hit = to_mirror.mirror.unwrap();
-        assert!((hit.point.x - 2.0).abs() < 1e-12 && to_mirror.target == Some(SurfaceId(1)));
+        let met = to_mirror.ray.at(to_mirror.ray.t_max);
+        assert!((met.x - 2.0).abs() < 1e-12 && to_mirror.left == Rgb::ONE && to_mirror.target == Some(SurfaceId(1)));
         assert!((to_mirror.ray.t_max + to_lamp.ray.t_max - sample.distance).abs() < 1e-12);
         let end = to_lamp.ray.at(to_lamp.ray.t_max);
         assert!((end.z - 3.0).abs() < 1e-12 && end.x.abs() <= 1.0 && end.y.abs() <= 1.0);
-        assert_eq!((to_lamp.target, to_lamp.mirror), (Some(SurfaceId(0)), None));
+        assert_eq!((to_lamp.target, to_lamp.left), (Some(SurfaceId(0)), Rgb::ONE));
     }
     assert!(through > 900, "{through}");
     let exact = factor(&twin, from, DVec3::Z).0;
@@ -289,7 +290,7 @@ fn a_mirror_shows_the_light_behind_it() {
     assert!(image.sample(DVec3::new(2.5, 0.0, 0.0), [0.5; 2]).is_none());
     let below = DVec3::new(0.5, 0.0, -50.0);
     let sample = image.sample(below, [0.5; 2]).unwrap();
-    assert!(!image.legs(&scene, Ray::new(below, DVec3::X), &sample, &mut legs));
+    assert!(!image.legs(&scene, Ray::new(below, DVec3::X), &sample, &mut Memory::default(), &mut legs));
     // -dr 0.
     scene.set_relays(0);
     assert_eq!(scene.lights.len(), 1);
@@ -333,7 +334,7 @@ fn two_mirrors_fold_the_way_twice() {
             let image = from + sample.dir * sample.distance;
             let source = DVec3::new(4.0 - image.x, 4.0 - image.y, image.z);
             assert!((source.z - 2.0).abs() < 1e-12 && source.x.abs() < 1.0 + 1e-9 && source.y.abs() < 1.0 + 1e-9);
-            if light.legs(&scene, Ray::new(from, DVec3::X), &sample, &mut legs) {
+            if light.legs(&scene, Ray::new(from, DVec3::X), &sample, &mut Memory::default(), &mut legs) {
                 passed += 1;
                 let last = legs[2].ray;
                 assert!((last.at(last.t_max) - source).length() < 1e-12);

@@ -238,6 +238,7 @@ fn request(args: &Args, options: &RadianceOptions, program: Program, inputs: Vec
         samples: args.spp,
         seed: args.seed,
         jitter: options.pixel_jitter,
+        aperture: options.aperture,
         limits: Limits {
             reflections: options.reflections,
             least_weight: options.least_weight,
