@@ -215,3 +215,35 @@ fn a_place_that_cannot_be_written_to_is_found_before_rendering() {
         assert_eq!(names, 2, "nothing was rendered for {option} {name}, and nothing is left");
     }
 }
+
+#[test]
+fn a_chosen_crex_is_recorded_and_replayed_without_choosing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let room = "void light lamp 0 0 3 9 9 9\nlamp sphere sun 0 0 4 0 1 1.5 .2\nvoid plastic grey 0 0 5 .5 .5 .5 0 0\n\
+                grey sphere shell 0 0 4 0 0 0 4\nvoid mirror silver 0 0 3 .9 .9 .9\n\
+                silver polygon m 0 0 12 -1 3 -1 1 3 -1 1 3 1 -1 3 1\n";
+    std::fs::write(path("room.rad"), room).unwrap();
+    let scene = path("room.rad");
+    let words =
+        ["render", &scene, "-vp", "0", "0", "0", "-vd", "0", "1", "0", "-x", "24", "-y", "24", "--crex", "auto"];
+    let (first, again, stats) = (path("a.exr"), path("b.exr"), path("stats.json"));
+    let output = crex(&[&words[..], &["--time", "0.5", "--stats", &stats, "-o", &first]].concat());
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let recorded: Value = serde_json::from_str(&std::fs::read_to_string(&stats).unwrap()).unwrap();
+    let chosen = recorded["crex"].as_str().unwrap();
+    renderer::crex::compile(chosen).unwrap();
+    assert!(stderr(&output).contains(&format!("\"{chosen}\"")), "{}", stderr(&output));
+    for crex_given in ["auto", chosen] {
+        let words = [&words[..words.len() - 1], &[crex_given, "--replay", &stats, "-o", &again]].concat();
+        let output = crex(&words);
+        assert_eq!(code(&output), 0, "{}", stderr(&output));
+        assert!(!stderr(&output).contains("looked at"), "{}", stderr(&output));
+        let [one, other] = [&first, &again].map(|name| picture::read(Path::new(name)).unwrap());
+        assert_eq!((one.beauty, one.layers), (other.beauty, other.layers));
+    }
+    // Without a time there is nothing to choose for.
+    let output = crex(&[&words[..], &["-o", &again]].concat());
+    assert_eq!(code(&output), 2);
+    assert!(stderr(&output).contains("--time"), "{}", stderr(&output));
+}
