@@ -324,7 +324,7 @@ fn statistics_have_the_contracts_keys() {
     let stats = folder.stats("[RS]T", &["--spp", "2", "--seed", "7"]);
     let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
     let mut expected: Vec<&str> =
-        "crex executed width height spp seed threads wall_s peak_bytes deadline_s left scene modulation timed stages"
+        "crex executed holds width height spp seed threads wall_s peak_bytes deadline_s left scene modulation timed stages"
             .split(' ')
             .collect();
     expected.sort_unstable();
