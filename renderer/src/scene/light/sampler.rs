@@ -75,10 +75,11 @@ impl Sampler {
         }
     }
 
-    /// The distance that a glow's radius limits: to the middle of a sphere, as in Radiance, to the sample of other shapes.
+    /// The distance that a glow's radius limits: to the middle of a sphere, as in Radiance, to the sample of other shapes. A bubble
+    /// counts by its sample, as the rays do that meet it from within: by its middle its light would count twice in Radiance.
     pub(super) fn reach(&self, from: DVec3, sample: &Sample) -> f64 {
         match self {
-            Self::Sphere(sphere) => sphere.centre().distance(from),
+            Self::Sphere(sphere) if !sphere.is_bubble() => sphere.centre().distance(from),
             _ => sample.distance,
         }
     }
