@@ -9,27 +9,11 @@ one sample that loads what there is to load. Denoised is by Intel's Open Image D
 import math
 import sys
 import time
-from pathlib import Path
 
 import bpy
 from mathutils import Matrix, Vector
 
-
-def read(scene):
-    """Materials as (kind, colour) by name, and polygons as (name, material, corners)."""
-    words = " ".join(line.split("#")[0] for line in Path(scene).read_text().splitlines()).split()
-    materials, polygons, at = {}, [], 0
-    while at < len(words):
-        modifier, kind, name = words[at : at + 3]
-        reals_at = at + 5 + int(words[at + 3])
-        count = int(words[reals_at])
-        reals = [float(word) for word in words[reals_at + 1 : reals_at + 1 + count]]
-        at = reals_at + 1 + count
-        if kind == "polygon":
-            polygons.append((name, modifier, [tuple(reals[i : i + 3]) for i in range(0, count, 3)]))
-        else:
-            materials[name] = (kind, reals[:3])
-    return materials, polygons
+from polygons import read as polygons_of, view_numbers
 
 
 def material(name, kind, color):
@@ -56,15 +40,14 @@ def material(name, kind, color):
 def build(scene_path, view_path, size):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
-    materials, polygons = read(scene_path)
+    materials, polygons = polygons_of(scene_path)
     made = {name: material(name, *it) for name, it in materials.items()}
     for name, modifier, corners in polygons:
         mesh = bpy.data.meshes.new(name)
         mesh.from_pydata(corners, [], [list(range(len(corners)))])
         mesh.materials.append(made[modifier])
         scene.collection.objects.link(bpy.data.objects.new(name, mesh))
-    text = Path(view_path).read_text().split()
-    number = lambda flag, n: [float(word) for word in text[text.index(flag) + 1 : text.index(flag) + 1 + n]]
+    number = lambda flag, n: view_numbers(view_path, flag, n)
     back, up = -Vector(number("-vd", 3)).normalized(), Vector(number("-vu", 3))
     right = up.cross(back).normalized()
     turn = Matrix((right, back.cross(right), back)).transposed().to_4x4()

@@ -24,6 +24,8 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 
+from polygons import read as polygons_of, view_numbers
+
 BRIGHT = np.array([0.265074126, 0.670114631, 0.064811243])
 SIZE = 256
 
@@ -39,7 +41,7 @@ def rgbe(data):
     """Radiance's picture format, run-length encoded, row 0 at the top."""
     end = data.index(b"\n\n") + 2
     line = data.index(b"\n", end)
-    height, width = map(int, re.match(rb"-Y (\d+) \+X (\d+)", data[end:line]).groups())
+    height, width = map(int, re.match(rb"-Y +(\d+) +\+X +(\d+)", data[end:line]).groups())
     at, rows = line + 1, np.empty((height, width, 4), np.uint8)
     for row in rows:
         at += 4
@@ -98,35 +100,26 @@ def mitsuba_scene(scene, view, variant):
     import mitsuba
 
     mitsuba.set_variant(variant)
-    words = " ".join(line.split("#")[0] for line in Path(scene).read_text().splitlines()).split()
-    materials, shapes, at = {}, {}, 0
-    while at < len(words):
-        modifier, kind, name = words[at : at + 3]
-        reals_at = at + 5 + int(words[at + 3])
-        count = int(words[reals_at])
-        reals = [float(word) for word in words[reals_at + 1 : reals_at + 1 + count]]
-        at = reals_at + 1 + count
-        if kind == "polygon":
-            corners = np.array(reals).reshape(-1, 3)
-            mesh = mitsuba.Mesh(name, len(corners), len(corners) - 2)
-            parameters = mitsuba.traverse(mesh)
-            parameters["vertex_positions"] = corners.astype(np.float32).ravel()
-            parameters["faces"] = np.array([[0, i, i + 1] for i in range(1, len(corners) - 1)], np.uint32).ravel()
-            parameters.update()
-            path = Path(tempfile.gettempdir(), f"equal_error_{os.getpid()}_{name}.ply")
-            mesh.write_ply(str(path))
-            kind, color = materials[modifier]
-            shapes[name] = {"type": "ply", "filename": str(path), "face_normals": True}
-            spectrum = {"type": "rgb", "value": color}
-            if kind == "light":
-                shapes[name]["emitter"] = {"type": "area", "radiance": spectrum}
-                shapes[name]["bsdf"] = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}}
-            else:
-                shapes[name]["bsdf"] = {"type": "diffuse", "reflectance": spectrum}
+    materials, polygons = polygons_of(scene)
+    shapes = {}
+    for name, modifier, corners in polygons:
+        corners = np.array(corners)
+        mesh = mitsuba.Mesh(name, len(corners), len(corners) - 2)
+        parameters = mitsuba.traverse(mesh)
+        parameters["vertex_positions"] = corners.astype(np.float32).ravel()
+        parameters["faces"] = np.array([[0, i, i + 1] for i in range(1, len(corners) - 1)], np.uint32).ravel()
+        parameters.update()
+        path = Path(tempfile.gettempdir(), f"equal_error_{os.getpid()}_{name}.ply")
+        mesh.write_ply(str(path))
+        kind, color = materials[modifier]
+        shapes[name] = {"type": "ply", "filename": str(path), "face_normals": True}
+        spectrum = {"type": "rgb", "value": color}
+        if kind == "light":
+            shapes[name]["emitter"] = {"type": "area", "radiance": spectrum}
+            shapes[name]["bsdf"] = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}}
         else:
-            materials[name] = (kind, reals[:3])
-    text = Path(view).read_text().split()
-    number = lambda flag, n: [float(word) for word in text[text.index(flag) + 1 : text.index(flag) + 1 + n]]
+            shapes[name]["bsdf"] = {"type": "diffuse", "reflectance": spectrum}
+    number = lambda flag, n: view_numbers(view, flag, n)
     origin, way = np.array(number("-vp", 3)), np.array(number("-vd", 3))
     to_world = mitsuba.ScalarTransform4f().look_at(list(origin), list(origin + way), number("-vu", 3))
     film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "component_format": "float32"}
