@@ -78,9 +78,11 @@ pub fn svg(curve: &Curve, title: &str) -> String {
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
          role=\"img\"><title>{0}</title><style>{STYLE}</style><rect width=\"100%\" height=\"100%\" fill=\"none\"/>\
-         <text x=\"{1}\" y=\"28\" font-size=\"16\">{0}</text>",
+         <text x=\"{1}\" y=\"28\" font-size=\"{2:.1}\">{0}</text>",
         escaped(title),
-        PLOT[0]
+        PLOT[0],
+        // A letter is about .6 of its size wide.
+        (16.0_f64).min((WIDTH - PLOT[0]) / (0.6 * title.chars().count().max(1) as f64))
     );
     if points.is_empty() {
         text.push_str("</svg>\n");
@@ -192,20 +194,30 @@ fn numbers(text: &mut String, scale: &Scale, front: &[&Point]) {
     }
 }
 
+/// Words in lines that the picture's width holds, those after the first indented; broken at spaces, and within what is too long to
+/// have one.
+fn wrapped(words: &str) -> Vec<String> {
+    let letters: Vec<char> = words.chars().collect();
+    let (mut lines, mut rest, mut room) = (Vec::new(), letters.as_slice(), CHARACTERS);
+    while !rest.is_empty() {
+        let full = &rest[..room.min(rest.len())];
+        let space =
+            full.iter().rposition(|&letter| letter == ' ').filter(|&at| full.len() < rest.len() && at > room / 2);
+        let (line, more) = rest.split_at(space.map_or(full.len(), |at| at + 1));
+        let indent = if lines.is_empty() { "" } else { "\u{2003}" };
+        lines.push(format!("{indent}{}", line.iter().collect::<String>().trim_end()));
+        (rest, room) = (more, CHARACTERS - 4);
+    }
+    lines
+}
+
 /// The lines of the list, each with whether it is bold: the front, and what the marks are.
 fn legend(points: &[&Point], front: &[&Point]) -> Vec<(bool, String)> {
     let mut lines = vec![(true, "The front: nothing quicker is as good".to_owned())];
     for (number, point) in (1..).zip(front) {
         let knee = if point.knee { " (knee)" } else { "" };
         let words = format!("{number}{knee}  {:.3} s, {:.2} JOD: {}", point.cpu_s, point.loss_jod, point.how());
-        let letters: Vec<char> = words.chars().collect();
-        let (head, tail) = letters.split_at(CHARACTERS.min(letters.len()));
-        lines.push((point.knee, head.iter().collect()));
-        // What a line does not hold goes on below it, indented.
-        lines.extend(
-            tail.chunks(CHARACTERS - 4)
-                .map(|more| (point.knee, format!("\u{2003}{}", more.iter().collect::<String>()))),
-        );
+        lines.extend(wrapped(&words).into_iter().map(|line| (point.knee, line)));
     }
     lines.push((false, String::new()));
     let there = KINDS.iter().filter(|(name, _)| points.iter().any(|point| kind(point) == *name));
@@ -268,5 +280,7 @@ mod tests {
         let whole: String = lines.iter().map(|line| line.trim_start_matches('\u{2003}')).collect();
         assert!(whole.contains(&long));
         assert!(text.contains(">1-2</text>") && text.contains(">3</text>"));
+        let words = "12  0.154 s, 1.57 JOD: T{RSGM}, thresholds, 4 spp";
+        assert_eq!(wrapped(words), ["12  0.154 s, 1.57 JOD: T{RSGM}, thresholds, 4", "\u{2003}spp"]);
     }
 }
