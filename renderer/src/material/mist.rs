@@ -14,7 +14,7 @@ pub struct MistArguments {
     pub extinction: Rgb,
     /// The part of that which is scattering, if the mist says.
     pub albedo: Option<Rgb>,
-    /// Heyney and Greenstein's eccentricity, in [0, 1], if the mist says.
+    /// Henyey and Greenstein's eccentricity, in [0, 1], if the mist says.
     pub eccentricity: Option<f64>,
 }
 

@@ -238,6 +238,7 @@ mod tests {
         {
             assert!(flat.iter().all(|value| (value - 2.0).abs() < 1e-9), "{flat:?}");
         }
+        // Radiance's weights of luminance fit its primaries' matrix to 1e-4.
         let luminance = |rgb: [f64; 3]| 0.265_074_126 * rgb[0] + 0.670_114_631 * rgb[1] + 0.064_811_243 * rgb[2];
         let mut half = [0.0; 20];
         half[..9].fill(1.0);

@@ -21,7 +21,7 @@ pub use outcome::{Account, Rendering, Snapshot};
 pub use pieces::{TILE, planes, tile, tile_count};
 pub use settings::{RenderError, Settings};
 pub use shard::Shard;
-pub use timed::{RoundRecord, TimedRecord, TimedRendering};
+pub use timed::{RoundRecord, TimedRecord, TimedRendering, paths};
 
 /// A scene ready to be rendered.
 pub struct Renderer<'a> {

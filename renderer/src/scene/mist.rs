@@ -65,7 +65,7 @@ impl Mists {
 pub struct Haze {
     /// The part of what is taken away that is scattered rather than absorbed.
     pub albedo: Rgb,
-    /// Heyney and Greenstein's eccentricity: 0 scatters every way alike, towards 1 more and more ahead.
+    /// Henyey and Greenstein's eccentricity: 0 scatters every way alike, towards 1 more and more ahead.
     pub eccentricity: f64,
 }
 

@@ -87,7 +87,7 @@ pub(super) fn was_in(pieces: &mut [Piece], scene: &Scene, mist: MistId) {
     }
 }
 
-/// Heyney and Greenstein's phase function times 4 pi, for the cosine between the ways before and after.
+/// Henyey and Greenstein's phase function times 4 pi, for the cosine between the ways before and after.
 fn phase(eccentricity: f64, cosine: f64) -> f64 {
     let squared = eccentricity * eccentricity;
     (1.0 - squared) / (1.0 + squared - 2.0 * eccentricity * cosine).max(f64::MIN_POSITIVE).powf(1.5)

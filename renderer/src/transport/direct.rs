@@ -124,7 +124,7 @@ impl Lit<'_> {
         let sample = &proposal.sample;
         let start = Ray { dir: sample.dir, t_max: sample.distance, ..self.start };
         if !light.relay().is_empty() {
-            if !light.legs(self.scene, start, sample, &mut scratch.memory, &mut scratch.legs) {
+            if light.legs(self.scene, start, sample, &mut scratch.memory, &mut scratch.legs).is_none() {
                 return Rgb::ZERO;
             }
             return self.visible(light, &start, &scratch.legs, &mut scratch.crossings, &mut scratch.memory);

@@ -50,7 +50,7 @@ fn the_rays_of_a_crex_are_those_of_complete_paths() {
             let mut profile = ProfileCache::new("scene", "machine");
             // Looks at the clock for a sprinkle, a round that is cut short, and some hundred paths.
             renderer.render_within(Budget::new(&clock, 8.0, 0.0), &mut profile).unwrap();
-            let paths = renderer.paths();
+            let paths = renderer::render::paths(&program, &settings.limits);
             let primary = (settings.width * settings.height) as u64;
             let estimate = estimate(&program, None, primary, |_| 1.0, (&profile, &paths)).unwrap();
             assert!(!estimate.endless, "{name} {crex}");

@@ -61,7 +61,7 @@ fn mist_takes_light_away() {
 }
 
 /// A narrow sun from the side: each point of the way through half a unit of mist gets it through half a unit more, weakened
-/// by absorption alone, and sends a part of it on by Heyney and Greenstein's function at a right angle.
+/// by absorption alone, and sends a part of it on by Henyey and Greenstein's function at a right angle.
 #[test]
 fn mist_scatters_the_lights_that_it_lists() {
     let sun = "void light sun 0 0 3 1e4 1e4 1e4\nsun source side 0 0 4 1 0 0 1\n";

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use renderer::picture::display::Display;
 use renderer::propose::{self, Modulated, Profile, Proposal, ProposeError, Question, Step};
-use renderer::render::{RenderError, Settings};
+use renderer::render::Settings;
 use renderer::schedule::Clock;
 use serde::Serialize;
 
@@ -103,7 +103,7 @@ struct StepReport {
 
 /// Processor time of the thread that asks: a stage's cost is measured on the thread that runs it, and so a busy machine does not
 /// make rays look dear.
-pub(crate) struct ThreadTime;
+struct ThreadTime;
 
 impl Clock for ThreadTime {
     fn now_s(&self) -> f64 {
@@ -112,30 +112,39 @@ impl Clock for ThreadTime {
     }
 }
 
+impl Prepared {
+    /// What a proposal for this scene and view is asked by.
+    pub(crate) fn question<'a>(
+        &'a self,
+        settings: &'a Settings,
+        display: &'a Display,
+        exposure: Option<f64>,
+    ) -> Question<'a> {
+        Question {
+            scene: self.scene(),
+            aggregate: self.aggregate(),
+            view: &self.request.view,
+            settings,
+            display,
+            exposure,
+            clock: &ThreadTime,
+        }
+    }
+}
+
 pub(crate) fn run(args: &Args, options: &RadianceOptions) -> Result<(), Failure> {
     let display = args.judged.display()?;
     let Judged { seed, threads, exposure, tolerance, .. } = args.judged;
     let prepared = render::prepare_scene(&args.scene, threads, seed, None, options)?;
     let settings = Settings { samples: args.spp, ..prepared.request.settings.clone() };
-    let aggregate = prepared.scene().aggregate();
-    let Prepared { request, .. } = &prepared;
-    let question = Question {
-        scene: prepared.scene(),
-        aggregate: &aggregate,
-        view: &request.view,
-        settings: &settings,
-        display: &display,
-        exposure,
-        clock: &ThreadTime,
-    };
-    let mut profile = Profile::new(question).map_err(refused)?;
-    let proposal = propose::propose_from(&mut profile).map_err(refused)?;
+    let mut profile = Profile::new(prepared.question(&settings, &display, exposure))?;
+    let proposal = propose::propose_from(&mut profile)?;
     let threads = timed::threads(&settings) as f64;
     let chosen = match args.time {
         None => proposal.within_loss(tolerance).clone(),
         Some(seconds) => proposal.within_seconds(seconds * threads).clone(),
     };
-    let modulated = propose::modulate(&mut profile, &chosen, tolerance).map_err(refused)?;
+    let modulated = propose::modulate(&mut profile, &chosen, tolerance)?;
     if args.json {
         console::print_json(&report(&proposal, &chosen, modulated, (tolerance, args.time), &settings))
     } else {
@@ -147,11 +156,12 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions) -> Result<(), Failure>
     }
 }
 
-/// A setting out of range is the caller's mistake, a lack of threads the machine's.
-pub(crate) fn refused(error: ProposeError) -> Failure {
-    match error {
-        ProposeError::Render(RenderError::Threads { .. }) => Failure::Cannot(error.to_string()),
-        _ => Failure::input(error),
+impl From<ProposeError> for Failure {
+    fn from(error: ProposeError) -> Self {
+        match error {
+            ProposeError::Render(error) => error.into(),
+            ProposeError::Compare(_) => Self::input(error),
+        }
     }
 }
 

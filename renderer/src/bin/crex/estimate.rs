@@ -58,9 +58,9 @@ impl From<&Expected> for Row {
 pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock) -> Result<(), Failure> {
     let prepared = render::prepare(&args.render, options)?;
     let mut profile = timed::profile(args.render.profile.as_deref(), &prepared)?;
-    let paths = prepared.with_renderer(clock, |renderer| Ok(renderer.paths()))?;
+    let paths = renderer::render::paths(&prepared.request.program, &prepared.request.settings.limits);
     if !knows(&profile, &paths) {
-        args.render.profile.as_deref().map_or(Ok(()), output::check_place)?;
+        args.render.profile.iter().try_for_each(|file| output::check_place(file))?;
         console::say("note", "nothing is known of some rays: a few are traced to learn what they cost");
         let budget = Budget::new(clock, clock.now_s() + LEARNING_S, 0.0);
         prepared.with_renderer(clock, |renderer| renderer.render_within(budget, &mut profile))?;

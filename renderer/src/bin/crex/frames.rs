@@ -57,7 +57,7 @@ pub(crate) fn run(
     let waiting: Vec<usize> =
         shard.of(0..views.len()).filter(|&frame| !names(frame).iter().all(|name| name.exists())).collect();
     let stored = args.profile.as_deref();
-    stored.map_or(Ok(()), output::check_place)?;
+    stored.iter().try_for_each(|file| output::check_place(file))?;
     let mut profile = None;
     output::clean_up_when_interrupted(waiting.iter().flat_map(|&frame| names(frame)).collect());
     for (done, &frame) in waiting.iter().enumerate() {

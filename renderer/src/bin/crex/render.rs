@@ -7,11 +7,10 @@ mod shards;
 use std::path::{Path, PathBuf};
 
 use renderer::component::Component;
-use renderer::film::Film;
 use renderer::importance::ran;
 use renderer::picture::{self, AtomicFile, Compression, Format, Picture, Quantity};
 use renderer::raster::Raster;
-use renderer::render::{Account, Settings, Shard};
+use renderer::render::{Account, Rendering, Settings, Shard};
 use renderer::schedule::{Clock, MonotonicClock};
 
 use crate::console::Failure;
@@ -154,12 +153,8 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
             let packing = Packing { compression, durable: true };
             output.write(&timed.rendering.film, args.exposure, &request.provenance, packing)?;
         }
-        write_parts(args, &prepared, &outputs, &timed.rendering.film)?;
-        let account = timed.rendering.account();
-        write_beside(args, &prepared, &account)?;
-        let stats = Stats::new(&request.program, &request.settings, &account, timed::threads(&request.settings));
         let record = timed::TimedStats::new(&timed, compression, 0.0);
-        return write_stats(args, &prepared, stats.with_time(None, record), clock);
+        return write_rest(args, &prepared, &outputs, &timed.rendering, Some((None, record)), clock);
     }
     if args.snapshots.is_none() && args.filter.is_empty() && prepared.exceeds(args.memory) {
         return shards::run_on_disk(args, &prepared, &outputs, clock);
@@ -176,11 +171,7 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
     for output in &outputs {
         output.write(&rendering.film, args.exposure, &request.provenance, Packing::CAREFUL)?;
     }
-    write_parts(args, &prepared, &outputs, &rendering.film)?;
-    let account = rendering.account();
-    write_beside(args, &prepared, &account)?;
-    let stats = Stats::new(&request.program, &request.settings, &account, timed::threads(&request.settings));
-    write_stats(args, &prepared, stats, clock)
+    write_rest(args, &prepared, &outputs, &rendering, None, clock)
 }
 
 /// As [`run`], within a time limit.
@@ -191,7 +182,6 @@ fn run_timed(
     seconds: f64,
     clock: &MonotonicClock,
 ) -> Result<(), Failure> {
-    let request = &prepared.request;
     let file = args.profile.as_deref();
     let extension = format_beside(outputs[0].path());
     let beside = timed::Beside {
@@ -202,21 +192,35 @@ fn run_timed(
     let mut limit = timed::Limit::new(seconds, (file, timed::profile(file, prepared)?), beside, prepared, outputs);
     let timed = limit.render(prepared, clock)?;
     limit.write(args.exposure, prepared, outputs, &timed.rendering, clock)?;
-    write_parts(args, prepared, outputs, &timed.rendering.film)?;
-    let account = timed.rendering.account();
-    write_beside(args, prepared, &account)?;
     limit.save()?;
-    let stats = Stats::new(&request.program, &request.settings, &account, timed::threads(&request.settings));
-    write_stats(args, prepared, stats.with_time(Some(limit.seconds()), limit.stats(&timed)), clock)?;
+    let record = (Some(limit.seconds()), limit.stats(&timed));
+    write_rest(args, prepared, outputs, &timed.rendering, Some(record), clock)?;
     // All files are closed. To give back scene and picture piece by piece would take tens of milliseconds more.
     std::process::exit(0)
 }
 
-/// Writes the parts of the picture, if they are asked for.
-fn write_parts(args: &Args, prepared: &Prepared, outputs: &[Output], film: &Film) -> Result<(), Failure> {
-    let Some(folder) = &args.parts else { return Ok(()) };
-    let pictures = Pictures::of_film(film, args.exposure, &prepared.request.provenance);
-    pictures.write(&[], Some((folder, format_beside(outputs[0].path()))), [Ok(film)])
+/// Writes whatever is asked for besides the picture: its parts, what ran where, and statistics, with the time limit and what
+/// was done within it.
+fn write_rest(
+    args: &Args,
+    prepared: &Prepared,
+    outputs: &[Output],
+    rendering: &Rendering,
+    timed: Option<(Option<f64>, timed::TimedStats)>,
+    clock: &MonotonicClock,
+) -> Result<(), Failure> {
+    let Request { program, settings, provenance, .. } = &prepared.request;
+    if let Some(folder) = &args.parts {
+        let pictures = Pictures::of_film(&rendering.film, args.exposure, provenance);
+        pictures.write(&[], Some((folder, format_beside(outputs[0].path()))), [Ok(&rendering.film)])?;
+    }
+    let account = rendering.account();
+    write_beside(args, prepared, &account)?;
+    let mut stats = Stats::new(program, settings, &account, timed::threads(settings));
+    if let Some((seconds, record)) = timed {
+        stats = stats.with_time(seconds, record);
+    }
+    write_stats(args, prepared, stats, clock)
 }
 
 /// Writes what is asked for beside the picture and does not need it.
@@ -251,7 +255,7 @@ fn outputs(args: &Args) -> Result<Vec<Output>, Failure> {
         paths.push(file.clone());
     }
     paths.push(shards::scratch(&outputs));
-    args.profile.as_deref().map_or(Ok(()), output::check_place)?;
+    args.profile.iter().try_for_each(|file| output::check_place(file))?;
     output::clean_up_when_interrupted(paths);
     Ok(outputs)
 }

@@ -5,16 +5,15 @@ use std::path::{Path, PathBuf};
 
 use renderer::component::{Component, ComponentSet};
 use renderer::crex::Program;
-use renderer::geometry::Aggregate;
 use renderer::picture::display::Display;
 use renderer::picture::{AtomicFile, Picture, compare};
-use renderer::propose::{self, Profile, Question, Step};
+use renderer::propose::{self, Profile, Step};
 use renderer::render::{Renderer, Rendering, Settings};
 use renderer::schedule::{Budget, Clock, MonotonicClock, ProfileCache};
 use renderer::trade::{Curve, Half, Modulated, Point, svg};
 use serde::Serialize;
 
-use crate::auto::{Judged, ThreadTime, refused};
+use crate::auto::Judged;
 use crate::console::{self, Failure, Progress};
 use crate::options::RadianceOptions;
 use crate::render::{self, Prepared};
@@ -102,7 +101,6 @@ struct Reference {
 /// What all renderings share.
 struct Bench<'a> {
     prepared: &'a Prepared,
-    aggregate: Aggregate,
     display: Display,
     exposure: f64,
     clock: &'a MonotonicClock,
@@ -117,21 +115,11 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
     let Judged { seed, threads, exposure, tolerance, .. } = args.judged;
     let prepared = render::prepare_scene(&args.scene, threads, seed, args.importance.as_deref(), options)?;
     let settings = prepared.request.settings.clone();
-    let aggregate = prepared.scene().aggregate();
-    let question = Question {
-        scene: prepared.scene(),
-        aggregate: &aggregate,
-        view: &prepared.request.view,
-        settings: &settings,
-        display: &display,
-        exposure,
-        clock: &ThreadTime,
-    };
-    let mut profile = Profile::new(question).map_err(refused)?;
-    let proposal = propose::propose_from(&mut profile).map_err(refused)?;
+    let mut profile = Profile::new(prepared.question(&settings, &display, exposure))?;
+    let proposal = propose::propose_from(&mut profile)?;
     let candidates = candidates(args, &proposal.steps, &mut profile, tolerance)?;
     let exposure = profile.exposure();
-    let bench = Bench { prepared: &prepared, aggregate, display, exposure, clock };
+    let bench = Bench { prepared: &prepared, display, exposure, clock };
     let most = args.spp.iter().copied().max().unwrap_or(1);
     let reference = Reference {
         crex: proposal.full().crex.clone(),
@@ -185,7 +173,7 @@ fn candidates(
     let mut made: Vec<Candidate> = steps.iter().map(|step| Candidate::plain(step.crex.clone())).collect();
     if args.importance.is_some() {
         for step in steps {
-            let modulated = propose::modulate(profile, step, tolerance).map_err(refused)?;
+            let modulated = propose::modulate(profile, step, tolerance)?;
             if modulated.thresholds.is_empty() {
                 continue;
             }
@@ -280,7 +268,7 @@ impl Bench<'_> {
         let program = Program::new(&plan::parse(&candidate.crex)?);
         let request = &self.prepared.request;
         let (scene, view) = (self.prepared.scene(), &request.view);
-        let mut renderer = Renderer::new(scene, &self.aggregate, view, &program, self.clock, settings)?;
+        let mut renderer = Renderer::new(scene, self.prepared.aggregate(), view, &program, self.clock, settings)?;
         renderer = renderer.with_progress(progress);
         if let Some(map) = request.importance.as_ref().filter(|_| candidate.importance != Modulated::No) {
             renderer = renderer.with_importance(map.values())?;

@@ -11,7 +11,7 @@ mod refine;
 mod round;
 
 use crate::color::Rgb;
-use crate::crex::ThresholdError;
+use crate::crex::{Program, ThresholdError};
 use crate::schedule::{Budget, ProfileCache};
 use crate::transport::{Limits, Modulation, Rule, Tracer};
 use crate::work::WorkReport;
@@ -200,17 +200,6 @@ impl Renderer<'_> {
         pixels * (planes * (4.0 * 24.0 + 12.0) + waiting)
     }
 
-    /// What paths are like, for the profile: the crex that they run and the limits that end them.
-    #[must_use]
-    pub fn paths(&self) -> String {
-        let Limits { reflections, least_weight, diffuse, glossy_threshold, diffuse_rays, glossy_rays } =
-            self.settings.limits;
-        let diffuse = diffuse.map_or(String::new(), |most| format!(" -ab {most}"));
-        let (ends, splits) =
-            (format!("-lr {reflections} -lw {least_weight}"), format!("-ad {diffuse_rays} -ss {glossy_rays}"));
-        format!("{} {ends}{diffuse} -st {glossy_threshold} {splits}", self.program.text())
-    }
-
     /// Bytes of the sums of all planes.
     fn plane_bytes(&self) -> u64 {
         let planes = 2 + self.stored().iter().count();
@@ -222,6 +211,16 @@ impl Renderer<'_> {
         let bytes = self.plane_bytes();
         profile.kept_s(name, bytes).unwrap_or(CHORE_S * bytes as f64)
     }
+}
+
+/// What paths are like, for the profile: the crex that they run and the limits that end them.
+#[must_use]
+pub fn paths(program: &Program, limits: &Limits) -> String {
+    let Limits { reflections, least_weight, diffuse, glossy_threshold, diffuse_rays, glossy_rays } = limits;
+    let diffuse = diffuse.map_or(String::new(), |most| format!(" -ab {most}"));
+    let (ends, splits) =
+        (format!("-lr {reflections} -lw {least_weight}"), format!("-ad {diffuse_rays} -ss {glossy_rays}"));
+    format!("{} {ends}{diffuse} -st {glossy_threshold} {splits}", program.text())
 }
 
 /// Bringing a round's sums together, and making the film, of samples in every pixel or with pixels to be filled in, by their

@@ -108,7 +108,7 @@ impl Refinement {
         (left_s, whole_s): (Left<'_>, Left<'_>),
         profile: &mut ProfileCache,
     ) -> Result<(), ThresholdError> {
-        let paths = renderer.paths();
+        let paths = super::paths(renderer.program, &renderer.settings.limits);
         let mut by_thread = vec![Learnt::default(); rayon::current_num_threads()];
         let mut in_time = true;
         while in_time && self.units < units {

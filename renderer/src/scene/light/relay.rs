@@ -34,19 +34,8 @@ pub struct Leg {
 
 impl Light {
     /// Lays out the way of a sample taken at `start.origin`, from mirror to mirror; `start` also names the surface that is
-    /// lit. `legs` is cleared and filled. False if the way misses one of the mirrors: then no light comes.
+    /// lit. `legs` is cleared and filled. `None` if the way misses one of the mirrors: then no light comes.
     pub fn legs(
-        &self,
-        scene: &Scene,
-        start: Ray,
-        sample: &LightSample,
-        memory: &mut Memory,
-        legs: &mut Vec<Leg>,
-    ) -> bool {
-        self.lay_out(scene, start, sample, memory, legs).is_some()
-    }
-
-    fn lay_out(
         &self,
         scene: &Scene,
         start: Ray,

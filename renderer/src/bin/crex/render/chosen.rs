@@ -2,11 +2,10 @@
 
 use renderer::crex::{self, Program};
 use renderer::picture::display::Display;
-use renderer::propose::{self, Levels, Profile, Question};
+use renderer::propose::{self, Levels, Profile};
 use renderer::schedule::{Clock, MonotonicClock};
 
 use super::{Args, Prepared};
-use crate::auto::{ThreadTime, refused};
 use crate::console::{self, Failure};
 use crate::timed;
 
@@ -40,20 +39,12 @@ pub(crate) fn choose(prepared: &mut Prepared, seconds: f64, clock: &MonotonicClo
     let left_s = || seconds - clock.now_s();
     let choosing_s = CHOOSING * left_s();
     let until_s = clock.now_s() + choosing_s;
-    let aggregate = prepared.scene().aggregate();
-    let question = Question {
-        scene: prepared.scene(),
-        aggregate: &aggregate,
-        view: &prepared.request.view,
-        settings: &settings,
-        display: &Display::of_the_paper(),
-        exposure: None,
-        clock: &ThreadTime,
-    };
+    let display = Display::of_the_paper();
+    let question = prepared.question(&settings, &display, None);
     let components = prepared.scene().components(settings.limits.glossy_threshold);
     let mut chosen = (Levels::full(components).crex(), "the full solution: there is no time to choose".to_owned());
-    if let Some(mut profile) = Profile::within(question, choosing_s * threads).map_err(refused)? {
-        let proposal = propose::propose_while(&mut profile, &|| clock.now_s() < until_s).map_err(refused)?;
+    if let Some(mut profile) = Profile::within(question, choosing_s * threads)? {
+        let proposal = propose::propose_while(&mut profile, &|| clock.now_s() < until_s)?;
         let best = proposal.within_seconds(TRACING * left_s() * threads);
         let (loss, took) = (best.forecast.loss_jod, best.forecast.seconds / threads);
         let seen = proposal.seen.len();

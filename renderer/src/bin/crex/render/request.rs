@@ -1,11 +1,13 @@
 //! A request of `crex render`: everything that its pictures depend on, read and checked.
 
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
 use clap::{Args as _, FromArgMatches as _};
 use renderer::component::Component;
 use renderer::crex::{self, Program, Setting};
 use renderer::film::{Layers, Plane};
+use renderer::geometry::Aggregate;
 use renderer::importance::map::ImportanceMap;
 use renderer::picture::{Input, Provenance, grey};
 use renderer::rad::RifView;
@@ -55,6 +57,8 @@ pub(crate) struct Prepared {
     /// The files that were read for the scene.
     pub(crate) files: Vec<PathBuf>,
     scene: Scene,
+    /// Its hierarchy, built when first asked for.
+    aggregate: OnceCell<Aggregate>,
     scene_inputs: Vec<Input>,
 }
 
@@ -78,7 +82,7 @@ pub(crate) fn prepare(args: &Args, options: &RadianceOptions) -> Result<Prepared
     for warning in crex::warnings(&ast, &setting) {
         console::say("warning", &warning.render(&args.crex));
     }
-    Ok(Prepared { request, files, scene, scene_inputs })
+    Ok(Prepared { request, files, scene, aggregate: OnceCell::new(), scene_inputs })
 }
 
 /// The options with the view of that name, or the first one if no view is given otherwise.
@@ -133,6 +137,11 @@ impl Prepared {
     /// The scene.
     pub(crate) fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// The scene's hierarchy of surfaces.
+    pub(crate) fn aggregate(&self) -> &Aggregate {
+        self.aggregate.get_or_init(|| self.scene.aggregate())
     }
 
     /// The planes of the picture.
@@ -190,15 +199,13 @@ impl Prepared {
         clock: &MonotonicClock,
         work: impl FnOnce(Renderer<'_>) -> Result<T, RenderError>,
     ) -> Result<T, Failure> {
-        let aggregate = self.scene.aggregate();
         let Request { program, view, settings, .. } = &self.request;
-        let mut renderer =
-            Renderer::new(&self.scene, &aggregate, view, program, clock, settings.clone()).map_err(Failure::from)?;
+        let mut renderer = Renderer::new(&self.scene, self.aggregate(), view, program, clock, settings.clone())?;
         if let Some(map) = &self.request.importance {
-            renderer = renderer.with_importance(map.values()).map_err(Failure::from)?;
+            renderer = renderer.with_importance(map.values())?;
         }
         if let Some(thresholds) = &self.request.thresholds {
-            renderer = renderer.with_thresholds(thresholds).map_err(Failure::from)?;
+            renderer = renderer.with_thresholds(thresholds)?;
         }
         if self.request.continuous {
             renderer = renderer.with_continuous_importance();
