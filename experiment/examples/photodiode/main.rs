@@ -5,8 +5,8 @@
 //! measurement of a display; `docs/sessions.md` says how to make one with a real photodiode.
 //!
 //! ```text
-//! cargo build -p experiment --bin crex-session
-//! cargo run -p experiment --example photodiode -- OUT
+//! cargo build --release -p experiment --bin crex-session
+//! cargo run --release -p experiment --example photodiode -- OUT
 //! ```
 //!
 //! Needs Xvfb and openbox. Each condition runs in chunks; a run that was broken off goes on with the chunk that is missing.
