@@ -1,4 +1,4 @@
-//! `--withdraw`: erases what a person answered, and leaves a dated stone in its place, so that counts still add up.
+//! `--withdraw`: erases what a person answered, and leaves a dated note in its place, so that counts still add up.
 //!
 //! The stone is on disk before anything is erased: an erasure that is cut short is finished by asking for it again. What
 //! stays is the pseudonym, the slot's claim, how many rows there were and when they were erased. The slot goes back into

@@ -243,7 +243,7 @@ fn a_full_disk_tears_no_row_and_the_session_goes_on() {
     assert!(stopped > 0, "no limit fell into a session");
 }
 
-/// Who withdraws leaves a dated stone and no answer; the slot goes back, and the code stays taken.
+/// Who withdraws leaves a dated note and no answer; the slot goes back, and the code stays taken.
 #[test]
 fn who_withdraws_leaves_a_stone_and_no_answers() {
     let folder = tempfile::tempdir().unwrap();

@@ -66,7 +66,7 @@ pub(super) fn does_not_fit(context: &egui::Context, wanted: [usize; 2]) -> Optio
     if window[0] < wanted[0] || window[1] < wanted[1] {
         return Some(format!(
             "The pictures have {} x {} pixels and the window only {} x {}. They are shown pixel for pixel or not at all: \
-             use a larger display. (Without a window manager a window cannot fill the screen.)",
+             use a larger display, or start a window manager, without which no window fills the screen.",
             wanted[0], wanted[1], window[0], window[1]
         ));
     }

@@ -5,7 +5,7 @@ use renderer::component::ComponentSet;
 use renderer::crex::{self, Program};
 use renderer::rad::{self, MemoryFiles, Source, ViewSpec};
 use renderer::raster::Raster;
-use renderer::render::{Renderer, Rendering, Settings};
+use renderer::render::{RenderError, Renderer, Rendering, Settings};
 use renderer::scene::{Scene, View};
 use renderer::schedule::ManualClock;
 
@@ -59,12 +59,15 @@ impl Look {
     }
 
     pub(crate) fn render(&self) -> Rendering {
+        self.try_render().unwrap()
+    }
+
+    pub(crate) fn try_render(&self) -> Result<Rendering, RenderError> {
         let scene = scene(&self.text).unwrap();
         let (aggregate, view) = (scene.aggregate(), View::new(self.view).unwrap());
         let program = Program::new(&crex::parse(self.crex).unwrap());
         let clock = ManualClock::default();
-        let renderer = Renderer::new(&scene, &aggregate, &view, &program, &clock, self.settings.clone()).unwrap();
-        renderer.render().unwrap()
+        Renderer::new(&scene, &aggregate, &view, &program, &clock, self.settings.clone())?.render()
     }
 
     pub(crate) fn picture(&self) -> Raster<Rgb> {

@@ -207,11 +207,13 @@ fn words(proposal: &Proposal, chosen: &Step, modulated: &Modulated, why: &str, s
         let name = if step.crex.is_empty() { "(direct light alone)" } else { &step.crex };
         text.push_str(&format!("{mark} {:8.3} {:10.2}  {name}\n", step.forecast.loss_jod, step.forecast.seconds));
     }
-    text.push_str(&format!("\n* {why}. With an importance map: --crex '{}'", modulated.crex));
-    if !modulated.thresholds.is_empty() {
-        let list: Vec<String> = modulated.thresholds.iter().map(f32::to_string).collect();
-        text.push_str(&format!(" --thresholds {}, or --continuous", list.join(",")));
+    text.push_str(&format!("\n* {why}.\n"));
+    if !modulated.crex.is_empty() {
+        text.push_str(&format!("\nWith an importance map: --crex '{}'\n", modulated.crex));
+        if !modulated.thresholds.is_empty() {
+            let list: Vec<String> = modulated.thresholds.iter().map(f32::to_string).collect();
+            text.push_str(&format!("and either --continuous or --thresholds {}\n", list.join(",")));
+        }
     }
-    text.push('\n');
     text
 }
