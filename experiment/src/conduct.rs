@@ -9,9 +9,10 @@ use stimuli::Study;
 
 use crate::clock::Utc;
 use crate::display::Display;
+use crate::display::DisplayFacts;
 use crate::enrol::{Claimed, DataFolder, analysis_plan_hash};
 use crate::error::{Error, Result};
-use crate::log::{DisplayFacts, SessionLog};
+use crate::log::SessionLog;
 use crate::script;
 use crate::session::{Effect, Input, Outcome, Record, Session};
 use crate::setup::Conditions;

@@ -3,8 +3,18 @@
 use analysis::trial_log::{OnsetSource, Vsync};
 use serde::{Deserialize, Serialize};
 
-use crate::log::DisplayFacts;
 use crate::timing::Refresh;
+
+/// What is known of the display's timing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DisplayFacts {
+    /// Where onsets come from.
+    pub onset_source: OnsetSource,
+    /// The measured refresh rate, Hz; `None` unless swaps were found to follow it.
+    pub refresh_hz: Option<f64>,
+    /// Whether they were.
+    pub vsync: Vsync,
+}
 
 /// The framebuffer held against the files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -22,6 +22,7 @@ use crate::clock::{Clock, Utc};
 use crate::design::{CellTotal, Plan, Slot};
 use crate::error::{Error, Result};
 use crate::log::{AppendFile, Identity, write_new};
+use crate::participant::check_code;
 
 /// Name and version of this program, as every row has it.
 pub const VERSION: &str = concat!("crex-session ", env!("CARGO_PKG_VERSION"));
@@ -389,21 +390,6 @@ impl DataFolder {
     fn back_file(&self, slot: u32, generation: u32) -> PathBuf {
         self.folder.join("slots").join(format!("{slot:04}-{generation}.back.json"))
     }
-}
-
-/// A participant's code is a pseudonym that can be a folder's name everywhere.
-///
-/// # Errors
-/// If it is not 1 to 32 letters, digits, `-` or `_` of ASCII, beginning with a letter or digit.
-pub fn check_code(code: &str) -> Result<()> {
-    let fits = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    let begins = code.starts_with(|c: char| c.is_ascii_alphanumeric());
-    if begins && code.len() <= 32 && code.chars().all(fits) {
-        return Ok(());
-    }
-    Err(Error::Input(format!(
-        "`{code}` cannot be a participant's code: use 1 to 32 letters, digits, `-` and `_`, and no name of a person"
-    )))
 }
 
 /// The digest of what will be computed and who will be left out.

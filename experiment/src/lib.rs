@@ -13,6 +13,7 @@ pub mod error;
 pub mod input;
 pub mod log;
 pub mod observer;
+pub mod participant;
 pub mod rehearse;
 pub mod script;
 pub mod selftest;

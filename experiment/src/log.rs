@@ -20,7 +20,7 @@ use analysis::trial_log::{Reader, Sidecar, Trial as Row, header_line, row_line};
 use stimuli::Sha256;
 
 use crate::clock::Utc;
-use crate::display::Display;
+use crate::display::{Display, DisplayFacts};
 use crate::error::{Error, Result};
 use crate::session::{Done, Record};
 use crate::setup::Conditions;
@@ -28,7 +28,7 @@ use crate::setup::Conditions;
 pub(crate) use disk::sync_folder_of;
 pub use disk::{AppendFile, write_new};
 pub use journal::{Event, Journal, Line, read_journal};
-pub use row::{DisplayFacts, Identity};
+pub use row::Identity;
 
 /// The open files of one session.
 #[derive(Debug)]

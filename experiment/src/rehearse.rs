@@ -4,9 +4,9 @@ use analysis::trial_log::{OnsetSource, Vsync};
 
 use crate::clock::Time;
 use crate::conduct::Conductor;
+use crate::display::DisplayFacts;
 use crate::error::{Error, Result};
 use crate::input::Key;
-use crate::log::DisplayFacts;
 use crate::observer::{Act, Observer};
 use crate::session::{Input, Outcome, Screen, Session};
 

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use stimuli::Study;
 
-use crate::enrol::check_code;
+use crate::participant::check_code;
 
 /// A condition that may be stated, and how it is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,9 +8,10 @@ use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use crate::clock::Utc;
-use crate::enrol::{DataFolder, check_code};
+use crate::enrol::DataFolder;
 use crate::error::{Error, Result};
 use crate::log::{sync_folder_of, write_new};
+use crate::participant::check_code;
 
 /// The stone's name in the session's folder.
 pub const STONE: &str = "withdrawn.json";

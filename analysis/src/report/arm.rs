@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::equivalence::Equivalence;
 use super::words::{self, Verdict};
 use crate::bayes::{self, BayesFactors};
 use crate::binomial::ExactBinomial;
@@ -13,8 +14,8 @@ use crate::counting::Accuracy;
 use crate::effect::Effect;
 use crate::equivalence::Tost;
 use crate::interval::Intervals;
-use crate::order::{CorrectedTost, Order};
-use crate::plan::{Bound, PlannedBound};
+use crate::order::Order;
+use crate::plan::PlannedBound;
 use crate::power::{Question, Reach, sample_size};
 use crate::proportion::Proportion;
 use crate::tally::{ArmTally, OrderTable};
@@ -67,21 +68,6 @@ pub struct LayoutChosen {
     /// The tests against one half.
     #[serde(flatten)]
     pub chosen: OneSample,
-}
-
-/// The equivalence tests at the planned bound.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Equivalence {
-    /// The planned bound.
-    pub bound: Bound,
-    /// The exact test on the raw proportion.
-    pub raw: Tost,
-    /// The test on the order-corrected proportion; none where the answers by order are not known.
-    pub corrected: Option<CorrectedTost>,
-    /// Whether the logs show that the bound was fixed before the first participant.
-    pub recorded: bool,
-    /// True only when both pass and the bound was fixed beforehand.
-    pub claimed: bool,
 }
 
 /// Right answers by the order of the two qualities.
@@ -190,17 +176,6 @@ impl OneSample {
         let tests = Tests::new(counts, alpha);
         let sentence = words::preference(what, counts, tests.intervals.as_ref());
         Self { k: counts.k, n: counts.n, proportion: counts.value(), tests, sentence }
-    }
-}
-
-impl Equivalence {
-    /// The tests of an arm at the planned bound; none without data or without a right answer.
-    #[must_use]
-    pub fn new(tally: &ArmTally, PlannedBound { bound, recorded }: PlannedBound, alpha: f64) -> Option<Self> {
-        let raw = Tost::new(tally.correct, bound.proportion, alpha).filter(|_| tally.right_answer)?;
-        let corrected = tally.order.as_ref().and_then(|table| CorrectedTost::new(table, bound.proportion, alpha));
-        let claimed = recorded && raw.passes && corrected.is_some_and(|test| test.passes);
-        Some(Self { bound, raw, corrected, recorded, claimed })
     }
 }
 

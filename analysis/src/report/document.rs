@@ -2,45 +2,14 @@
 
 use super::Report;
 use super::arm::{ArmReport, Tests};
+use super::block::{Block, Table};
 use super::numbers::{p_value, percent, range, short};
-use super::plot::{self, Figure, Row};
+use super::plot::{self, Row};
 use super::sources;
-use super::words::{self, Finding};
-use crate::pictures::Picture;
+use super::words;
 
 /// Exclusions that a page lists; the JSON has more.
 const ON_THE_PAGE: usize = 200;
-
-/// A piece of a page.
-pub(super) enum Block {
-    /// The page's own heading.
-    Title(String),
-    /// What nobody may overlook.
-    Banner(String),
-    /// A verdict: arm, finding, sentence.
-    Verdict(String, Finding, String),
-    /// A heading of level 2 or 3.
-    Heading(u8, String),
-    /// A paragraph.
-    Text(String),
-    /// Sentences that stand by themselves.
-    List(Vec<String>),
-    /// Names and values.
-    Facts(Vec<(String, String)>),
-    /// A table.
-    Table(Table),
-    /// Drawings that belong together.
-    Figures(Vec<Figure>),
-    /// The pictures that were shown.
-    Pictures(Vec<Picture>),
-}
-
-/// A table of texts.
-pub(super) struct Table {
-    pub(super) caption: String,
-    pub(super) columns: Vec<&'static str>,
-    pub(super) rows: Vec<Vec<String>>,
-}
 
 /// The whole report.
 pub(super) fn of(report: &Report) -> Vec<Block> {

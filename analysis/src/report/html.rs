@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::document::{Block, Table};
+use super::block::{Block, Table};
+use super::escape::escape;
 use super::numbers::{grouped, short};
 use super::plot::Figure;
 use super::words::Finding;
@@ -141,22 +142,6 @@ pub(super) fn cost(shown: &Picture) -> String {
         format!(", {} s on {threads}", short(seconds))
     });
     format!("{} rays{}", grouped(rays), time.unwrap_or_default())
-}
-
-/// Text that is only text in HTML. A number keeps its percent sign, a p its value, on one line.
-pub(super) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.replace(" %", "\u{a0}%").replace("p = ", "p\u{a0}=\u{a0}").chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            _ => out.push(character),
-        }
-    }
-    out
 }
 
 /// Base 64 (RFC 4648, section 4).

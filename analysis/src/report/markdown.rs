@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::document::{Block, Table};
+use super::block::{Block, Table};
 
 pub(super) fn write(blocks: &[Block]) -> String {
     let mut out = String::new();

@@ -2,8 +2,11 @@
 
 pub mod arm;
 pub mod between;
+mod block;
 mod csv_table;
 mod document;
+pub mod equivalence;
+mod escape;
 mod gather;
 mod html;
 pub mod ladder;
@@ -12,6 +15,7 @@ pub mod numbers;
 pub mod planning;
 pub mod plot;
 mod sources;
+pub mod target;
 pub mod words;
 
 use std::path::PathBuf;

@@ -2,14 +2,15 @@
 
 use serde::Serialize;
 
-use super::document::{Block, Table};
+use super::block::{Block, Table};
 use super::numbers::percent;
 use super::plot::{self, Figure};
+use super::target::Target;
 use super::words::planning as words;
 use super::{html, markdown};
 use crate::order;
 use crate::plan::Bound;
-use crate::power::{Question, Reach, SampleSize, sample_size};
+use crate::power::{Question, Reach, sample_size};
 
 /// Beyond this many people the probability that both equivalence tests pass is not enumerated.
 const BOTH_LIMIT: u64 = 200;
@@ -45,20 +46,6 @@ pub struct Planning {
     pub curve: Vec<(u64, f64)>,
     /// In words.
     pub sentences: Vec<String>,
-}
-
-/// The people that one target takes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Target {
-    /// The power aimed at.
-    pub power: f64,
-    /// The numbers of people; none where a million are too few.
-    pub people: Option<SampleSize>,
-    /// `held_from` rounded up to a multiple of 4, so that the cells of an arm can be balanced.
-    pub balanced: Option<u64>,
-    /// For equivalence: the probability that raw and order-corrected test both pass with `balanced` people without a
-    /// lean; none beyond a number that can be enumerated.
-    pub both_pass: Option<f64>,
 }
 
 impl Planning {

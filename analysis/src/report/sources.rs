@@ -1,7 +1,7 @@
 //! How the numbers are made, and where they come from.
 
 use super::Report;
-use super::document::Table;
+use super::block::Table;
 use super::numbers::{grouped, short};
 
 /// What each number is, for a reader who wants to make it again.

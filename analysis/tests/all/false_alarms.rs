@@ -15,7 +15,7 @@ use analysis::order::{CorrectedTost, power_of_both};
 use analysis::plan::{Bound, PlannedBound};
 use analysis::proportion::Proportion;
 use analysis::psychometric::{Curve, Family, Level, likeliest};
-use analysis::report::arm::Equivalence;
+use analysis::report::equivalence::Equivalence;
 use analysis::report::words::{self, Finding};
 use analysis::special::normal;
 use analysis::tally::{ArmTally, OrderTable};

@@ -83,16 +83,6 @@ fn one_code_started_many_times_at_once_has_one_session() {
     assert_eq!(got.iter().filter(|&&got| got).count(), 1);
 }
 
-#[test]
-fn codes_that_are_no_codes_are_refused() {
-    for code in ["", "../x", "a/b", "Ann Smith", "-x", ".", "caf\u{e9}", &"x".repeat(33)] {
-        assert!(check_code(code).is_err(), "{code}");
-    }
-    for code in ["P01", "7", "a_b-c"] {
-        assert!(check_code(code).is_ok(), "{code}");
-    }
-}
-
 /// Participants who drop out give their slots back: the study ends with every slot used once, so its cells are the plan's.
 #[test]
 fn dropouts_leave_no_hole() {

@@ -1,8 +1,9 @@
 //! From what was planned and observed to a row of the log.
 
-use analysis::trial_log::{OnsetSource, Trial as Row, Vsync};
+use analysis::trial_log::{OnsetSource, Trial as Row};
 use serde::{Deserialize, Serialize};
 
+use crate::display::DisplayFacts;
 use crate::timing::IntervalFrames;
 use crate::trial::{Observed, TrialPlan};
 
@@ -31,17 +32,6 @@ pub struct Identity {
     pub started_utc: String,
     /// Whether the study is a demonstration.
     pub demo: bool,
-}
-
-/// What is known of the display's timing.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DisplayFacts {
-    /// Where onsets come from.
-    pub onset_source: OnsetSource,
-    /// The measured refresh rate, Hz; `None` unless swaps were found to follow it.
-    pub refresh_hz: Option<f64>,
-    /// Whether they were.
-    pub vsync: Vsync,
 }
 
 /// The row of a trial.

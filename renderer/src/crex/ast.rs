@@ -4,6 +4,10 @@ use std::num::NonZeroU32;
 
 use crate::component::Component;
 
+/// Groups within each other, at most. A multiplier on a multiplied item counts as the group that it stands for:
+/// `T2*` is `(T2)*`.
+pub const MAX_NESTING: usize = 64;
+
 /// Byte offsets into a crex text, end exclusive, both on character boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Span {

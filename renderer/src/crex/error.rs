@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-use super::ast::{Group, Span};
-use super::parse::MAX_NESTING;
+use super::ast::{Group, MAX_NESTING, Span};
 
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]

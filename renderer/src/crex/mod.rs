@@ -15,11 +15,11 @@ mod program;
 mod tree;
 mod warning;
 
-pub use ast::{Ast, Atom, Group, Item, Multiplier, Repeat, Span};
+pub use ast::{Ast, Atom, Group, Item, MAX_NESTING, Multiplier, Repeat, Span};
 pub use cursor::{Cursor, Task};
 pub use error::{Error, ErrorKind};
 pub use explain::explain;
-pub use parse::{MAX_ERRORS, MAX_NESTING, parse};
+pub use parse::{MAX_ERRORS, parse};
 pub use program::{Holding, Program, STAR_LIMIT, ThresholdError};
 pub use tree::{PlanError, PlanReport};
 pub use warning::{Setting, Warning, warnings};

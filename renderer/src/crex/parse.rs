@@ -2,14 +2,10 @@
 
 use std::num::NonZeroU32;
 
-use super::ast::{Ast, Atom, Group, Item, Multiplier, Repeat, Span};
+use super::ast::{Ast, Atom, Group, Item, MAX_NESTING, Multiplier, Repeat, Span};
 use super::error::{Error, ErrorKind};
 use super::lex::{Token, TokenKind, tokens};
 use crate::component::Component;
-
-/// Groups within each other, at most. A multiplier on a multiplied item counts as the group that it stands for:
-/// `T2*` is `(T2)*`.
-pub const MAX_NESTING: usize = 64;
 
 /// Errors reported for one text, at most: the first ones.
 pub const MAX_ERRORS: usize = 20;

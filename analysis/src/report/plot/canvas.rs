@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::report::html::escape;
+use crate::report::escape::escape;
 use crate::report::numbers::short;
 
 /// Width of a plot that stands alone, in its own units: about as many as the pixels it gets, so that type keeps its size.

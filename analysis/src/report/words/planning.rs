@@ -2,7 +2,7 @@
 
 use crate::power::Question;
 use crate::report::numbers::{percent, short};
-use crate::report::planning::Target;
+use crate::report::target::Target;
 
 /// The heading.
 #[must_use]

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{bound_words, counted, percent_level};
 use crate::interval::Intervals;
-use crate::report::arm::Equivalence;
+use crate::report::equivalence::Equivalence;
 use crate::report::numbers::{p_equals, percent_range};
 use crate::tally::ArmTally;
 
