@@ -155,6 +155,7 @@ impl Report {
     #[must_use]
     pub fn title(&self) -> String {
         match &self.provenance.study {
+            Some(study) if self.simulated => format!("Study {study}, rehearsed: what simulated observers answered"),
             Some(study) => format!("Study {study}: what people noticed"),
             None if self.provenance.logs.is_empty() => "Published counts: what people noticed".to_owned(),
             None => "Empty logs".to_owned(),

@@ -133,6 +133,7 @@ fn simulated_reports_say_so() {
     let rows: Vec<Trial> = paper().into_iter().map(|row| Trial { simulated: true, demo: true, ..row }).collect();
     let report = of(&rows, &Options::default());
     assert!(report.simulated);
+    assert!(report.title().ends_with("what simulated observers answered"), "{}", report.title());
     for text in [report.to_markdown(), report.to_html()] {
         assert!(text.contains("Simulated observers answered") && text.contains("A demonstration, not a study."));
     }
