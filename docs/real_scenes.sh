@@ -83,6 +83,7 @@ women="'!xform -n plainclothes -s 1.5 -rx 90 -rz -80 -t 1 0 0 -a 9 -rz 40 -i 1 -
 women="$women '!xform -m chrome -n shiny -s 1.5 -rx 90 -rz -105 -t 1 0 0 -rz 20 -a 9 -rz 40 -i 1 -t -5 2.5 0 ./woman.rad'"
 view="-vf inside.vf"
 fish="-vf fish.vf"
+prism="-vts -vp -4.25514 3.89431 1.97742 -vd -0.700687 -1.28443 -0.21925 -vh 140 -vv 140"
 def="-vta -vp -0.2 3.07 2.78 -vd -2.64 -0.48 -1.25 -vh 66.6667 -vv 37.5"
 plan="-vtl -vp -4 2.5 2.5 -vd 0 0 -1 -vu -1 0 0 -vh 5 -vv 5"
 desk="-vp 8 36 -27 -vd -0.560723 -0.233635 0.794358 -vu 0 1 0 -vh 39.9 -vv 27.5"
@@ -104,6 +105,33 @@ done
 # Without the vase, whose mesh is absent.
 files="basic.mat $open rect_fixture.rad sunset_sky.rad dielectric_pane.rad"
 compare dielectric renders "$files" "$view" "$files"
+
+# At the -dj 1 of all others rpict loses samples of the sun behind the prisms (agreement.md).
+for name in prism1 prism2; do
+    files="basic.mat $open sunset_sky.rad $name.rad"
+    compare "$name" renders "$files" "$prism" "$files" "" "-dj .3 -ds 0"
+done
+# What rpict loses of a sun behind a sheet of prisms: the irradiance of a wall behind it, by jitter, with the share of points without any.
+if is_wanted prism_jitter; then
+    cd "$SCENES/renders"
+    sun="void light sol 0 0 3 25000 25000 25000 sol source sun 0 0 4 -.9338 -.35 .001 1"
+    place="p polygon w 0 0 12 -8.1 -50 -50 -8.1 50 -50 -8.1 50 50 -8.1 -50 50"
+    for sheet in "7 coef1 dx1 dy1 dz1 prism.cal -rz 90 0 4 1.52 .2 .1 .2" "7 coef2 dx2 dy2 dz2 prism.cal -rz 90 0 4 1.52 .2 .1 .2" \
+        "5 .8 Dx Dy Dz+if(Dx,-1,1)*.8*Dx . 0 0"; do
+        echo "$sun void prism1 p $sheet $place" | oconv - > "$work/sheet.oct"
+        for jitter in 0 .3 .7 .9 1; do
+            awk 'BEGIN { srand(1); for (i = 0; i < 4000; i++) print -4, 4 * rand() - 2, 4 * rand() - 2, -1, 0, 0 }' |
+                rtrace -I -h -ab 0 -dr 1 -dj $jitter -ds 0 -dp 0 -dt 0 -u+ "$work/sheet.oct" 2>> "$work/log" |
+                awk -v name="${sheet:0:7} at -dj $jitter" '{ sum += $1; dark += $1 == 0 } END { print name ":", sum / NR, dark / NR }'
+        done
+    done
+fi
+
+# Without the front cap, which rpict sees through by -bv-.
+files="basic.mat diorama_walls.rad closed_end.rad gymbal.rad mist.rad spotlights.rad spotcones.rad"
+compare mist renders "$files" "-vp 0.1 3.2 2.8 -vd -2.7336 -0.482008 -1.02483 -vh 45 -vv 45" "$files"
+compare wgmdf renders "basic.mat $suite ringlight.rad gymbal2.rad" \
+    "-vp -2.60899 4.62728 2.52391 -vd -1.11057 -1.64932 -1.10768 -vh 46.6777 -vv 46.6777" wgmdf.rif
 
 # A bulb of 200 facets with a ball's surface in place of the last sphere of a file, whose name, centre and radius follow.
 facets() {

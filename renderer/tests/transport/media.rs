@@ -173,6 +173,27 @@ fn prisms_relay_lights_to_where_they_seem_to_be() {
     assert_eq!(stage.pixel("", endless(16)), Rgb::ZERO);
 }
 
+/// A sheet that doubles sines on the way up, and halves them on the way down, lights the floor as a sun would that stood where
+/// the sheet shows it, of the sun's own solid angle: no part of the light is lost where the image is narrower than the sun (a
+/// shear would keep a quarter of it).
+#[test]
+fn prisms_relay_all_of_a_sun() {
+    let lit = |more: &str| {
+        let floor = "void plastic matt 0 0 5 .5 .5 .5 0 0\nmatt polygon floor 0 0 12 -9 -9 0 9 -9 0 9 9 0 -9 9 0\n";
+        let sun = "void light sun 0 0 3 1e4 1e4 1e4\n";
+        Stage::new(&format!("{floor}{sun}{more}"), [0.0, -1.0, 0.2], [0.0, 1.0, -0.2], 1e-4).pixel("", endless(256))
+    };
+    let prism = "void prism1 p 5 .8 Dx*if(Dz,2,.5) Dy*if(Dz,2,.5) \
+        if(Dz,sqrt(1-4*(Dx*Dx+Dy*Dy)),-sqrt(1-(Dx*Dx+Dy*Dy)/4)) . 0 0\n";
+    let sheet = format!("{prism}p polygon s 0 0 12 -50 -50 2 50 -50 2 50 50 2 -50 50 2\n");
+    for sine in [0.0_f64, 0.3] {
+        let sun = |sine: f64| format!("sun source s 0 0 4 {sine} 0 {} .5\n", (1.0 - sine * sine).sqrt());
+        let seen = lit(&sun(sine)) * 0.8;
+        assert!(seen.min_element() > 0.0);
+        assert_close(lit(&format!("{}{sheet}", sun(2.0 * sine))), seen, 1e-5);
+    }
+}
+
 /// DxA..DzA is where the light is that a prism is asked for: one that passes light from above only.
 #[test]
 fn prisms_know_the_light() {

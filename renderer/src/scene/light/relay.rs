@@ -169,7 +169,7 @@ pub(in crate::scene) fn relayed(
                             || (light.relay.is_empty() && light.source == SourceId::Surface(surface));
                         let ways = if itself { 0 } else { scene.ways(prism) };
                         for way in 0..ways {
-                            if let Some(turn) = Turn::of_prism(scene, shape, light.aim(), (prism, way)) {
+                            if let Some(turn) = Turn::of_prism(scene, shape, light, (prism, way)) {
                                 image(turn);
                             }
                         }

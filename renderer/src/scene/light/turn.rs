@@ -1,6 +1,6 @@
 //! What a flat mirror or prism does to the light that it relays.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::sampler::Sample;
 use super::{Light, Sampler};
@@ -49,12 +49,14 @@ impl Aim {
 /// A prism relays a light as if it stood elsewhere: by the shear that keeps the prism's plane and brings the light's
 /// centre to where the ray through the prism's centre seems to come from (mirrored in the plane, if the prism sends light
 /// back). That is exact for the centres; every ray is then redirected by the prism's own functions, and counts if it
-/// meets the light (as in rpict).
+/// meets the light (as in rpict). The image of a distant light is drawn in until all of it does; rpict loses the samples that miss.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shear {
     plane: Plane,
     /// What a point moves by for each unit of its height.
     shift: DVec3,
+    /// The image of a difference of points; for distant lights, of a direction.
+    image: DMat3,
     /// 1: what is lit lies in front of the plane, -1: behind it.
     lit: f64,
     /// The prism, and the number of its way.
@@ -75,9 +77,13 @@ pub(super) enum Turn {
 /// Cosines of at most this lie in the prism's plane, as in rpict; so does a coefficient that is nothing.
 const LEAST: f64 = 1e-6;
 
+/// On so many points of a distant light's rim it is tried whether they are met.
+const RIM: usize = 32;
+
 impl Turn {
-    /// What way `way` of a prism of shape `shape` does to a light at `aim`; `None` if it relays none of it.
-    pub(super) fn of_prism(scene: &Scene, shape: &Shape, aim: Aim, way: (ProgramId, usize)) -> Option<Self> {
+    /// What way `way` of a prism of shape `shape` does to a light; `None` if it relays none of it.
+    pub(super) fn of_prism(scene: &Scene, shape: &Shape, light: &Light, way: (ProgramId, usize)) -> Option<Self> {
+        let aim = light.aim();
         let (point, normal) = shape.plane()?;
         let centre = match shape {
             Shape::Triangle(triangle) => triangle.corners().iter().sum::<DVec3>() / 3.0,
@@ -95,7 +101,15 @@ impl Turn {
         let through = (cosine_before > 0.0) == (cosine_after > 0.0);
         let shift = if through { after - before } else { -after - before };
         let plane = Plane { point, normal };
-        Some(Self::Prism(Shear { plane, shift, lit: cosine_after.signum(), way, aim }))
+        let shear = DMat3::IDENTITY + outer(shift, normal);
+        let image = match aim {
+            Aim::Direction(axis) => {
+                let within = share_met(scene, way, &place, (light, axis), shear).unwrap_or(1.0);
+                shear * (DMat3::IDENTITY * within + outer(axis, axis) * (1.0 - within))
+            }
+            Aim::Point(_) => shear,
+        };
+        Some(Self::Prism(Shear { plane, shift, image, lit: cosine_after.signum(), way, aim }))
     }
 
     /// The point whose image is `point`; `None` on the side of the sheet that gets no light.
@@ -119,7 +133,7 @@ impl Turn {
     pub(super) fn turned(&self, vector: DVec3) -> DVec3 {
         match self {
             Self::Mirror(plane) => plane.reflect_direction(vector),
-            Self::Prism(shear) => vector + shear.shift * vector.dot(shear.plane.normal),
+            Self::Prism(shear) => shear.image * vector,
         }
     }
 
@@ -131,6 +145,32 @@ impl Turn {
         };
         origin + self.turned(point - origin)
     }
+}
+
+/// The matrix that takes a vector `v` to `a` times the product of `b` and `v`.
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+/// The share of a distant light's radius within which a prism's functions lead all that a shear takes for its image back to it:
+/// less than 1 where they show the light narrower than the shear has it.
+fn share_met(
+    scene: &Scene,
+    way: (ProgramId, usize),
+    place: &Place<'_>,
+    (light, centre): (&Light, DVec3),
+    shear: DMat3,
+) -> Option<f64> {
+    let mut memory = Memory::default();
+    let mut led = |from: DVec3| {
+        let place = Place { dir: (shear * from).try_normalize()?, ..*place };
+        Some(scene.redirected(way, &place, centre, &mut memory)?.0)
+    };
+    if !led(centre)?.abs_diff_eq(centre, LEAST) {
+        return None;
+    }
+    let rim = light.rim().filter_map(|rim| Some(led(rim)?.distance(centre) / rim.distance(centre)));
+    Some(1.0 / rim.fold(1.0, f64::max))
 }
 
 impl Shear {
@@ -150,6 +190,15 @@ impl Light {
             }
             sampler => Aim::Point(self.turns.iter().rev().fold(sampler.centre(), |at, turn| turn.turned_point(at))),
         }
+    }
+
+    /// Unit vectors to points all around its rim, seen over its mirrors and prisms; none if it is not distant.
+    fn rim(&self) -> impl Iterator<Item = DVec3> {
+        let points = if let Sampler::Distant { .. } = self.sampler { RIM } else { 0 };
+        (0..points).filter_map(|point| {
+            let sample = self.sampler.sample(DVec3::ZERO, [1.0, point as f64 / RIM as f64])?;
+            self.turns.iter().rev().fold(sample.dir, |dir, turn| turn.turned(dir)).try_normalize()
+        })
     }
 
     /// Turns a sample of the light as seen from `image` into one of the light's image as seen from `from`.
