@@ -72,8 +72,10 @@ fn a_curve_is_written_in_three_forms() {
 #[test]
 fn filters_and_time_limits_are_points_of_the_curve() {
     let folder = tempfile::tempdir().unwrap();
-    let more =
-        ["--json", "--spp", "1,4", "--crex", "MD", "--filter", "D", "--time", ".05,.2", "-o", "c.csv", "-o", "c.svg"];
+    let more = [
+        "--json", "--spp", "1,4", "--crex", "MD", "--filter", "D", "--time", ".05,.2", "--by", "rel-mse", "-o",
+        "c.csv", "-o", "c.svg",
+    ];
     let curve = json(&crex(folder.path(), "trade", &more));
     let points = curve["points"].as_array().unwrap();
     let of = |filter: &str, timed: bool| -> Vec<&Value> {
@@ -88,8 +90,17 @@ fn filters_and_time_limits_are_points_of_the_curve() {
     let noise = |point: &Value| point["rel_mse"].as_f64().unwrap();
     assert!(noise(smoothed[0]) < noise(plain), "smoothing takes noise away: {} of {plain}", smoothed[0]);
     assert!(points.iter().all(|p| p["filter"] == "" || p["crex"].as_str().unwrap().contains('D')));
+    // By the loss that is asked for: nothing on the front is beaten in it.
+    let front = |p: &&Value| p["front"] == true;
+    let (time, loss) = (|p: &Value| p["cpu_s"].as_f64().unwrap(), noise);
+    let beaten = |p: &Value| points.iter().any(|q| time(q) <= time(p) && loss(q) < loss(p));
+    assert!(points.iter().filter(front).count() > 0 && !points.iter().filter(front).any(beaten));
     let svg = fs::read_to_string(folder.path().join("c.svg")).unwrap();
-    assert!(svg.contains("diamond: planes smoothed") && svg.contains("cross: within a time limit"));
+    assert!(
+        svg.contains("relative mean squared error")
+            && svg.contains("diamond: planes smoothed")
+            && svg.contains("cross: within a time limit")
+    );
     let table = fs::read_to_string(folder.path().join("c.csv")).unwrap();
     assert!(table.lines().any(|line| line.starts_with("MD,no,,0.05,4,")), "{table}");
 }

@@ -52,16 +52,52 @@ pub struct Point {
     pub flip: f64,
     /// Relative mean squared error of luminance.
     pub rel_mse: f64,
-    /// Whether no other point is both quicker and better (processor seconds, JOD).
+    /// Whether no other point is both quicker and better (processor seconds, the curve's loss).
     pub front: bool,
     /// Whether it is the knee of the front.
     pub knee: bool,
+}
+
+/// Which of a point's losses decides what is better.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Loss {
+    /// That in JOD.
+    #[default]
+    Jod,
+    /// Mean FLIP.
+    Flip,
+    /// Relative mean squared error.
+    RelMse,
+}
+
+impl Loss {
+    /// The loss of a point.
+    #[must_use]
+    pub fn of(self, point: &Point) -> f64 {
+        match self {
+            Self::Jod => point.loss_jod,
+            Self::Flip => point.flip,
+            Self::RelMse => point.rel_mse,
+        }
+    }
+
+    /// A loss with its unit, or its name.
+    #[must_use]
+    pub fn words(self, loss: f64) -> String {
+        match self {
+            Self::Jod => format!("{loss:.2} JOD"),
+            Self::Flip => format!("{loss:.3} FLIP"),
+            Self::RelMse => format!("{loss:.4} relative MSE"),
+        }
+    }
 }
 
 /// All renderings of a scene, the quickest first.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Curve {
     points: Vec<Point>,
+    loss: Loss,
 }
 
 /// What half the time costs.
@@ -80,18 +116,18 @@ impl Curve {
     /// linear one, each scaled to the front's extent (V. Satopaa and others, "Finding a 'Kneedle' in a Haystack", ICDCSW
     /// 2011, without its smoothing). A front of fewer than three points, or one that nowhere lies below its chord, has none.
     #[must_use]
-    pub fn new(mut points: Vec<Point>) -> Self {
+    pub fn new(mut points: Vec<Point>, loss: Loss) -> Self {
         points.sort_by(|a, b| {
-            (a.cpu_s, a.loss_jod).partial_cmp(&(b.cpu_s, b.loss_jod)).unwrap_or(std::cmp::Ordering::Equal)
+            (a.cpu_s, loss.of(a)).partial_cmp(&(b.cpu_s, loss.of(b))).unwrap_or(std::cmp::Ordering::Equal)
         });
         let mut least = f64::INFINITY;
         for point in &mut points {
-            (point.front, point.knee) = (point.cpu_s.is_finite() && point.loss_jod < least, false);
+            (point.front, point.knee) = (point.cpu_s.is_finite() && loss.of(point) < least, false);
             if point.front {
-                least = point.loss_jod;
+                least = loss.of(point);
             }
         }
-        let mut curve = Self { points };
+        let mut curve = Self { points, loss };
         if let Some(knee) = curve.find_knee() {
             curve.points[knee].knee = true;
         }
@@ -102,7 +138,7 @@ impl Curve {
         let front: Vec<(usize, f64, f64)> = (0..)
             .zip(&self.points)
             .filter(|(_, point)| point.front && point.cpu_s > 0.0)
-            .map(|(index, point)| (index, point.cpu_s.ln(), point.loss_jod))
+            .map(|(index, point)| (index, point.cpu_s.ln(), self.loss.of(point)))
             .collect();
         let (&(_, start, high), &(_, end, low)) = (front.first()?, front.last()?);
         if front.len() < 3 || end <= start || high <= low {
@@ -113,6 +149,12 @@ impl Curve {
             |&(_, time, loss): &(usize, f64, f64)| 1.0 - (time - start) / (end - start) - (loss - low) / (high - low);
         let knee = front.iter().max_by(|a, b| below(a).total_cmp(&below(b)))?;
         (below(knee) > 1e-9).then_some(knee.0)
+    }
+
+    /// By which loss points are better.
+    #[must_use]
+    pub fn loss(&self) -> Loss {
+        self.loss
     }
 
     /// The points, the quickest first.
@@ -187,7 +229,7 @@ mod tests {
     }
 
     fn front(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-        let curve = Curve::new(points.iter().map(|&(time, loss)| point(time, loss)).collect());
+        let curve = Curve::new(points.iter().map(|&(time, loss)| point(time, loss)).collect(), Loss::Jod);
         curve.front().map(|point| (point.cpu_s, point.loss_jod)).collect()
     }
 
@@ -200,21 +242,39 @@ mod tests {
     #[test]
     fn the_knee_is_farthest_below_the_chord_in_log_time() {
         // In log2 time 0, 1, 2, 4 of 4 and loss 1, 1/3, 1/6, 0 of 3: below the chord by 0, 5/12, 1/3, 0.
-        let curve = Curve::new([(1.0, 3.0), (2.0, 1.0), (4.0, 0.5), (16.0, 0.0)].map(|(t, l)| point(t, l)).to_vec());
+        let curve =
+            Curve::new([(1.0, 3.0), (2.0, 1.0), (4.0, 0.5), (16.0, 0.0)].map(|(t, l)| point(t, l)).to_vec(), Loss::Jod);
         assert_eq!(curve.knee().map(|point| point.cpu_s), Some(2.0));
         // What halves with each doubling is straight and has no knee; nor have two points.
-        let straight = Curve::new([(1.0, 2.0), (2.0, 1.0), (4.0, 0.0)].map(|(t, l)| point(t, l)).to_vec());
+        let straight = Curve::new([(1.0, 2.0), (2.0, 1.0), (4.0, 0.0)].map(|(t, l)| point(t, l)).to_vec(), Loss::Jod);
         assert_eq!(straight.knee(), None);
-        assert_eq!(Curve::new(vec![point(1.0, 2.0), point(2.0, 1.0)]).knee(), None);
-        assert_eq!(Curve::new(vec![]).knee(), None);
+        assert_eq!(Curve::new(vec![point(1.0, 2.0), point(2.0, 1.0)], Loss::Jod).knee(), None);
+        assert_eq!(Curve::new(vec![], Loss::Jod).knee(), None);
     }
 
     #[test]
     fn half_the_time_is_the_best_that_fits() {
-        let curve = Curve::new([(1.0, 3.0), (3.0, 1.0), (5.0, 0.5), (8.0, 0.0)].map(|(t, l)| point(t, l)).to_vec());
+        let curve =
+            Curve::new([(1.0, 3.0), (3.0, 1.0), (5.0, 0.5), (8.0, 0.0)].map(|(t, l)| point(t, l)).to_vec(), Loss::Jod);
         let Half { best, half } = curve.half().unwrap();
         assert_eq!((best.cpu_s, half.cpu_s), (8.0, 3.0));
-        assert_eq!(Curve::new(vec![point(4.0, 1.0), point(5.0, 0.5)]).half(), None);
+        assert_eq!(Curve::new(vec![point(4.0, 1.0), point(5.0, 0.5)], Loss::Jod).half(), None);
+    }
+
+    #[test]
+    fn each_loss_has_a_front_of_its_own() {
+        let made = |cpu_s, losses: [f64; 3]| Point {
+            cpu_s,
+            loss_jod: losses[0],
+            flip: losses[1],
+            rel_mse: losses[2],
+            ..Point::default()
+        };
+        let points = vec![made(1.0, [1.0, 0.5, 0.1]), made(2.0, [2.0, 0.4, 0.3]), made(4.0, [0.5, 0.6, 0.2])];
+        for (loss, times) in [(Loss::Jod, vec![1.0, 4.0]), (Loss::Flip, vec![1.0, 2.0]), (Loss::RelMse, vec![1.0])] {
+            let curve = Curve::new(points.clone(), loss);
+            assert_eq!(curve.front().map(|point| point.cpu_s).collect::<Vec<_>>(), times, "{loss:?}");
+        }
     }
 
     #[test]

@@ -3,5 +3,5 @@
 mod curve;
 mod svg;
 
-pub use curve::{Curve, Half, Modulated, Point};
+pub use curve::{Curve, Half, Loss, Modulated, Point};
 pub use svg::svg;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::curve::{Curve, Point};
+use super::curve::{Curve, Loss, Point};
 
 /// The plot's place in the picture, and the picture's width: left, top, right, bottom, all.
 const PLOT: [f64; 4] = [70.0, 60.0, 640.0, 440.0];
@@ -46,34 +46,39 @@ fn kind(point: &Point) -> &'static str {
 struct Scale {
     time: [f64; 2],
     most: f64,
+    loss: Loss,
 }
 
 impl Scale {
-    fn of(points: &[&Point]) -> Self {
+    fn of(points: &[&Point], loss: Loss) -> Self {
         let times = points.iter().map(|point| point.cpu_s);
         let (low, high) = times.fold((f64::INFINITY, 0.0_f64), |(low, high), time| (low.min(time), high.max(time)));
         let margin = (high / low).ln().max(0.1) * 0.04;
-        let most = points.iter().map(|point| point.loss_jod).fold(0.01_f64, f64::max) * 1.05;
-        Self { time: [low.ln() - margin, high.ln() + margin], most }
+        let most = points.iter().map(|point| loss.of(point)).fold(1e-6_f64, f64::max) * 1.05;
+        Self { time: [low.ln() - margin, high.ln() + margin], most, loss }
     }
 
     fn x(&self, cpu_s: f64) -> f64 {
         PLOT[0] + (PLOT[2] - PLOT[0]) * (cpu_s.ln() - self.time[0]) / (self.time[1] - self.time[0])
     }
 
-    fn y(&self, loss_jod: f64) -> f64 {
-        PLOT[3] - (PLOT[3] - PLOT[1]) * loss_jod / self.most
+    fn y(&self, loss: f64) -> f64 {
+        PLOT[3] - (PLOT[3] - PLOT[1]) * loss / self.most
+    }
+
+    fn place(&self, point: &Point) -> (f64, f64) {
+        (self.x(point.cpu_s), self.y(self.loss.of(point)))
     }
 }
 
-/// Loss in JOD against processor seconds on a logarithmic axis, the front as a line with its points numbered and listed, the
+/// The curve's loss against processor seconds on a logarithmic axis, the front as a line with its points numbered and listed, the
 /// knee ringed. Reads in light and in dark surroundings.
 #[must_use]
 pub fn svg(curve: &Curve, title: &str) -> String {
-    let shown = |point: &&Point| point.cpu_s > 0.0 && point.cpu_s.is_finite() && point.loss_jod.is_finite();
+    let shown = |point: &&Point| point.cpu_s > 0.0 && point.cpu_s.is_finite() && curve.loss().of(point).is_finite();
     let points: Vec<&Point> = curve.points().iter().filter(shown).collect();
     let front: Vec<&Point> = curve.front().filter(shown).collect();
-    let entries: Vec<(bool, String)> = legend(&points, &front);
+    let entries: Vec<(bool, String)> = legend(&points, &front, curve.loss());
     let height = (PLOT[3] + 60.0).max(PLOT[1] + LINE * (entries.len() as f64 + 1.0));
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \
@@ -88,10 +93,10 @@ pub fn svg(curve: &Curve, title: &str) -> String {
         text.push_str("</svg>\n");
         return text;
     }
-    let scale = Scale::of(&points);
+    let scale = Scale::of(&points, curve.loss());
     axes(&mut text, &scale);
     let path: Vec<String> =
-        front.iter().map(|p| format!("{:.1},{:.1}", scale.x(p.cpu_s), scale.y(p.loss_jod))).collect();
+        front.iter().map(|point| scale.place(point)).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
     put(&mut text, format_args!("<polyline class=\"front\" points=\"{}\"/>", path.join(" ")));
     points.iter().for_each(|point| mark(&mut text, &scale, point));
     numbers(&mut text, &scale, &front);
@@ -115,7 +120,7 @@ fn axes(text: &mut String, scale: &Scale) {
     let ticks = (scale.most / step).floor() as u32;
     for loss in (0..=ticks).map(|tick| f64::from(tick) * step) {
         let y = scale.y(loss);
-        let digits = if step < 0.1 { 2 } else { usize::from(step < 1.0) };
+        let digits = (-step.log10().floor()).max(0.0) as usize;
         put(text, format_args!("<path class=\"grid\" d=\"M{left} {y:.1}H{right}\"/>"));
         put(
             text,
@@ -129,7 +134,12 @@ fn axes(text: &mut String, scale: &Scale) {
     put(
         text,
         format_args!(
-            "<text x=\"22\" y=\"{middle}\" text-anchor=\"middle\" transform=\"rotate(-90 22 {middle})\">predicted loss, JOD</text>"
+            "<text x=\"22\" y=\"{middle}\" text-anchor=\"middle\" transform=\"rotate(-90 22 {middle})\">{}</text>",
+            match scale.loss {
+                Loss::Jod => "predicted loss, JOD",
+                Loss::Flip => "mean FLIP",
+                Loss::RelMse => "relative mean squared error",
+            }
         ),
     );
 }
@@ -152,7 +162,7 @@ fn nice_step(least: f64) -> f64 {
 }
 
 fn mark(text: &mut String, scale: &Scale, point: &Point) {
-    let (x, y) = (scale.x(point.cpu_s), scale.y(point.loss_jod));
+    let (x, y) = scale.place(point);
     let kind = kind(point);
     let class = format!("{kind}{}", if point.front { "" } else { " off" });
     let shape = match kind {
@@ -167,7 +177,7 @@ fn mark(text: &mut String, scale: &Scale, point: &Point) {
         }
     };
     let name = shape[1..].split(' ').next().unwrap_or("path");
-    let tip = format!("{:.3} s, {:.2} JOD: {}", point.cpu_s, point.loss_jod, point.how());
+    let tip = format!("{:.3} s, {}: {}", point.cpu_s, scale.loss.words(scale.loss.of(point)), point.how());
     put(text, format_args!("{shape}<title>{}</title></{name}>", escaped(&tip)));
     if point.knee {
         put(text, format_args!("<circle class=\"knee\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"9\"/>"));
@@ -176,7 +186,7 @@ fn mark(text: &mut String, scale: &Scale, point: &Point) {
 
 /// The numbers of the front's points beside them; those of points that lie together as a run, such as 5-7.
 fn numbers(text: &mut String, scale: &Scale, front: &[&Point]) {
-    let place = |point: &Point| (scale.x(point.cpu_s), scale.y(point.loss_jod));
+    let place = |point: &Point| scale.place(point);
     let mut rest = front;
     let mut first = 1;
     while let Some(&point) = rest.first() {
@@ -212,11 +222,11 @@ fn wrapped(words: &str) -> Vec<String> {
 }
 
 /// The lines of the list, each with whether it is bold: the front, and what the marks are.
-fn legend(points: &[&Point], front: &[&Point]) -> Vec<(bool, String)> {
+fn legend(points: &[&Point], front: &[&Point], loss: Loss) -> Vec<(bool, String)> {
     let mut lines = vec![(true, "The front: nothing quicker is as good".to_owned())];
     for (number, point) in (1..).zip(front) {
         let knee = if point.knee { " (knee)" } else { "" };
-        let words = format!("{number}{knee}  {:.3} s, {:.2} JOD: {}", point.cpu_s, point.loss_jod, point.how());
+        let words = format!("{number}{knee}  {:.3} s, {}: {}", point.cpu_s, loss.words(loss.of(point)), point.how());
         lines.extend(wrapped(&words).into_iter().map(|line| (point.knee, line)));
     }
     lines.push((false, String::new()));
@@ -258,18 +268,20 @@ mod tests {
             loss_jod,
             ..Point::default()
         };
-        let curve = Curve::new(vec![point("<MRSGD>T*", 1.0, 1.0), point("", 0.5, 2.0), point("D", 0.0, f64::NAN)]);
+        let curve =
+            Curve::new(vec![point("<MRSGD>T*", 1.0, 1.0), point("", 0.5, 2.0), point("D", 0.0, f64::NAN)], Loss::Jod);
         let text = svg(&curve, "a < b");
         assert!(text.contains("&lt;MRSGD&gt;T*") && text.contains("a &lt; b") && text.contains("direct light, 1 spp"));
         assert!(!text.contains("NaN") && !text.contains("<MRSGD>"));
-        assert!(svg(&Curve::new(vec![]), "nothing").ends_with("</svg>\n"));
+        assert!(svg(&Curve::new(vec![], Loss::Jod), "nothing").ends_with("</svg>\n"));
     }
 
     #[test]
     fn long_words_go_on_below_and_numbers_do_not_lie_on_each_other() {
         let point = |crex: &str, cpu_s, loss_jod| Point { crex: crex.to_owned(), cpu_s, loss_jod, ..Point::default() };
         let long = "{T}*{M}{T}*{G}{T}*".repeat(8);
-        let curve = Curve::new(vec![point("D", 1.0, 3.0), point("D2", 1.001, 2.999), point(&long, 4.0, 0.5)]);
+        let curve =
+            Curve::new(vec![point("D", 1.0, 3.0), point("D2", 1.001, 2.999), point(&long, 4.0, 0.5)], Loss::Jod);
         let text = svg(&curve, "a scene");
         let lines = |text: &str| -> Vec<String> {
             let marked = text.split("<text x=\"670\"").skip(1);

@@ -10,7 +10,7 @@ use renderer::picture::{AtomicFile, Picture, compare};
 use renderer::propose::{self, Profile, Step};
 use renderer::render::{Renderer, Rendering, Settings};
 use renderer::schedule::{Budget, Clock, MonotonicClock, ProfileCache};
-use renderer::trade::{Curve, Half, Modulated, Point, svg};
+use renderer::trade::{Curve, Half, Loss, Modulated, Point, svg};
 use serde::Serialize;
 
 use crate::auto::Judged;
@@ -48,9 +48,23 @@ pub(crate) struct Args {
     /// Also try the crexes within so many seconds of rendering, with the most samples of --spp
     #[arg(long, value_name = "S,S,..", value_parser = crate::timed::seconds, value_delimiter = ',')]
     time: Vec<f64>,
+    /// The loss by which points are better or worse; all are in .csv and .json
+    #[arg(long, value_name = "LOSS", default_value = "jod")]
+    by: By,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+}
+
+/// `--by`.
+#[derive(clap::ValueEnum, Clone, Copy, Debug)]
+enum By {
+    /// What ColorVideoVDP predicts that people see
+    Jod,
+    /// Mean FLIP
+    Flip,
+    /// Relative mean squared error of luminance
+    RelMse,
 }
 
 /// A crex to try.
@@ -86,6 +100,8 @@ struct Report<'a> {
     seed: u64,
     exposure: f64,
     reference: Reference,
+    /// The loss that decides the front, the knee and the half.
+    loss: Loss,
     points: &'a [Point],
     knee: Option<&'a Point>,
     half: Option<Half>,
@@ -127,7 +143,12 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         seed: seed.wrapping_add(1),
     };
     let trials = trials(args, &candidates, most);
-    let curve = Curve::new(bench.measure(&trials, &reference)?);
+    let loss = match args.by {
+        By::Jod => Loss::Jod,
+        By::Flip => Loss::Flip,
+        By::RelMse => Loss::RelMse,
+    };
+    let curve = Curve::new(bench.measure(&trials, &reference)?, loss);
     let names = args.scene.scenes.iter().map(|path| path.display().to_string());
     let Settings { width, height, threads, .. } = settings;
     let report = Report {
@@ -138,6 +159,7 @@ pub(crate) fn run(args: &Args, options: &RadianceOptions, clock: &MonotonicClock
         seed,
         exposure,
         reference,
+        loss,
         points: curve.points(),
         knee: curve.knee(),
         half: curve.half(),
@@ -357,18 +379,19 @@ fn words(curve: &Curve, report: &Report<'_>) -> String {
         ));
     }
     match curve.half() {
-        Some(Half { best, half }) => text.push_str(&format!(
-            "\nAt half the time of the best ({:.2} of {:.2} s) you lose {:.2} JOD more ({:.2} against {:.2}; FLIP {:.3} against \
-             {:.3}), with {}.\n",
-            half.cpu_s,
-            best.cpu_s,
-            half.loss_jod - best.loss_jod,
-            half.loss_jod,
-            best.loss_jod,
-            half.flip,
-            best.flip,
-            half.how()
-        )),
+        Some(Half { best, half }) => {
+            let loss = curve.loss();
+            let [less, most] = [&half, &best].map(|point| loss.of(point));
+            text.push_str(&format!(
+                "\nAt half the time of the best ({:.2} of {:.2} s) you lose {} more ({} against {}), with {}.\n",
+                half.cpu_s,
+                best.cpu_s,
+                loss.words(less - most),
+                loss.words(less),
+                loss.words(most),
+                half.how()
+            ));
+        }
         None => text.push_str("\nNothing that was tried takes half the time of the best.\n"),
     }
     text
