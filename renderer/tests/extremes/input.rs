@@ -2,6 +2,7 @@
 
 use renderer::crex;
 use renderer::rad::{self, MemoryFiles, Options, Source, ViewSpec};
+use renderer::scene::Scene;
 
 use crate::look::scene;
 use crate::table::{Case, Row, group};
@@ -21,11 +22,12 @@ fn plastic(reals: &str, words: &str) -> Row {
     refused(words, &format!("void plastic p 0 0 5 {reals}\np sphere s 0 0 4 0 0 0 1\n"))
 }
 
-/// A text whose commands read these files.
+/// A text whose commands and instances read these files.
 fn reading(words: &str, text: &str, files: &[(&str, &str)]) -> Row {
     let files = files.iter().fold(MemoryFiles::new(), |files, &(name, text)| files.with(name, text));
     let read = rad::read(&[Source::new("scene.rad", text)], &files, &Options::default());
-    Row::message(words, read.map(|_| ()).map_err(|errors| errors[0].to_string()))
+    let built = read.and_then(|document| Scene::from_rad_with(&document, &files));
+    Row::message(words, built.map(|_| ()).map_err(|errors| errors[0].to_string()))
 }
 
 fn view(text: &str) -> Row {
@@ -97,6 +99,14 @@ pub(crate) fn cases() -> Vec<Case> {
                 reading("more than the limit", "!cat f0.rad\n", &files)
             }),
             ("an alias of itself", || refused("`a`", "void alias a a\n")),
+            ("two aliases of each other", || refused("`b`", "void alias a b\nvoid alias b a\n")),
+            ("an instance that holds itself", || {
+                reading(
+                    "an instance of itself",
+                    "void instance i 1 a.rad 0 0\n",
+                    &[("a.rad", "void instance i 1 b.rad 0 0\n"), ("b.rad", "void instance i 1 a.rad 0 0\n")],
+                )
+            }),
             ("gensurf of 10^6 x 10^6", || command("more than 4000000", "gensurf p s 's' 't' '0' 1000000 1000000")),
             ("genrev of 10^12 segments", || command("from 1 to", "genrev p r 't' '1' 1e12")),
             ("genworm of 10^12 segments", || command("from 1 to", "genworm p w 't' '0' '0' '.1' 1e12")),
