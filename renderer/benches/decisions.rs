@@ -3,7 +3,7 @@
 use divan::{Bencher, counter::ItemsCount};
 use renderer::component::{Component, PerComponent};
 use renderer::crex;
-use renderer::schedule::{Budget, ManualClock, ProfileCache, RayKind, TimedScheduler, TimedWork};
+use renderer::schedule::{Budget, ManualClock, PictureCosts, ProfileCache, RayKind, TimedScheduler, TimedWork};
 use renderer::work::WorkReport;
 
 fn main() {
@@ -33,7 +33,8 @@ fn decisions(bencher: Bencher, expression: &str) {
     let known = profile();
     bencher.counter(ItemsCount::new(600_usize)).with_inputs(|| known.clone()).bench_local_refs(|profile| {
         let budget = Budget::new(&clock, 1e6, 0.0);
-        let mut scheduler = TimedScheduler::new(&program, None, budget, profile).expect("its own thresholds");
+        let mut costs = PictureCosts::new(profile, program.text());
+        let mut scheduler = TimedScheduler::new(&program, None, budget, &mut costs).expect("its own thresholds");
         let mut ran = 0_u64;
         while let Some(work) = scheduler.next(|_| occupancy) {
             if let TimedWork::Run(_) = work {

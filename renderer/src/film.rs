@@ -120,6 +120,19 @@ impl Planes {
         debug_assert_eq!((&self.layers, self.ambient), (&other.layers, other.ambient));
         self.sums.iter_mut().zip(&other.sums).for_each(|(sum, term)| *sum += *term);
     }
+
+    /// Adds the sums of a rectangle of pixels that lies within the one that `other` is of; both must have been cleared alike.
+    pub fn add_part(&mut self, part: &Block, other: &Self, whole: &Block) {
+        let planes = self.sums.len() / self.pixels.max(1);
+        for plane in 0..planes {
+            for row in 0..part.height {
+                let from = plane * other.pixels + (part.y - whole.y + row) * whole.width + part.x - whole.x;
+                let to = plane * self.pixels + row * part.width;
+                let terms = &other.sums[from..from + part.width];
+                self.sums[to..to + part.width].iter_mut().zip(terms).for_each(|(sum, term)| *sum += *term);
+            }
+        }
+    }
 }
 
 /// A rectangle of pixels.

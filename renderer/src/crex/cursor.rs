@@ -2,7 +2,7 @@
 
 use super::ast::{Repeat, Span};
 use super::program::{Op, Program, STAR_LIMIT};
-use crate::component::ComponentSet;
+use crate::component::{ComponentSet, PerComponent};
 use crate::work::{GroupId, Stage, StageKey, Work};
 
 /// What a scheduler under a time limit decides about as a whole.
@@ -12,6 +12,8 @@ pub struct Task {
     pub group: Option<GroupId>,
     /// The components that it runs, each on the rays visible in its bin now.
     pub components: ComponentSet,
+    /// Where each of them runs first: the byte offset of its letter, and which run of that letter it will be, from 1.
+    pub places: PerComponent<(usize, u64)>,
     /// Only rays of pixels with at least this importance run.
     pub threshold: Option<f32>,
 }
@@ -104,15 +106,38 @@ impl<'p> Cursor<'p> {
             Op::OpenTimed(id) => Some(Task {
                 group: Some(id),
                 components: self.program.group_components(id),
+                places: self.group_places(),
                 threshold: threshold(self.program.group_threshold(id)),
             }),
-            Op::Run(letter) => {
-                let letter = &self.program.letters[letter as usize];
+            Op::Run(number) => {
+                let letter = &self.program.letters[number as usize];
+                let mut places = PerComponent::default();
+                places[letter.component] = self.place(number);
                 let components = ComponentSet::EMPTY.with(letter.component);
-                letter.group.is_none().then(|| Task { group: None, components, threshold: threshold(letter.threshold) })
+                let threshold = threshold(letter.threshold);
+                letter.group.is_none().then_some(Task { group: None, components, places, threshold })
             }
             _ => None,
         }
+    }
+
+    /// Where a letter will run next.
+    fn place(&self, number: u32) -> (usize, u64) {
+        (self.program.letters[number as usize].span.start, self.runs[number as usize] + 1)
+    }
+
+    /// Where the components of the `[ ]` that the walk stands before will run first.
+    fn group_places(&self) -> PerComponent<(usize, u64)> {
+        let mut places = PerComponent::default();
+        let inside = self.program.ops[self.at..].iter().take_while(|op| !matches!(op, Op::CloseTimed));
+        for op in inside {
+            let Op::Run(number) = *op else { continue };
+            let place = &mut places[self.program.letters[number as usize].component];
+            if *place == (0, 0) {
+                *place = self.place(number);
+            }
+        }
+        places
     }
 
     /// Tells how many rays the last [`Work::Run`] traced; 0 for one that was skipped.

@@ -81,6 +81,12 @@ impl Cost {
         self.observations = self.observations.saturating_add(other.observations);
     }
 
+    /// The cost of the same rays if all of them had taken so many times as long.
+    #[must_use]
+    pub fn scaled(self, times: f64) -> Self {
+        Self { mean_s: times * self.mean_s, squares: times * times * self.squares, ..self }
+    }
+
     /// A cost as it was stored; none if these are not numbers that observations can amount to.
     pub(super) fn from_parts(rays: u64, observations: u64, mean_s: f64, spread_s: f64, effective: f64) -> Option<Self> {
         let weight = rays as f64;
@@ -187,6 +193,10 @@ mod tests {
             );
             let stored = stored.expect("what was observed can be stored");
             prop_assert!((stored.spread_s() - whole.spread_s()).abs() <= 1e-6 * whole.spread_s() + 1e-12);
+            let thrice: Vec<_> = observations.iter().map(|&(rays, seconds)| (rays, 3.0 * seconds)).collect();
+            let (thrice, scaled) = (observed(&thrice), whole.scaled(3.0));
+            prop_assert!(near(thrice.mean_s(), scaled.mean_s()));
+            prop_assert!((thrice.spread_s() - scaled.spread_s()).abs() <= 1e-6 * thrice.spread_s() + 1e-12);
         }
     }
 }

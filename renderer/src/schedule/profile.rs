@@ -8,9 +8,10 @@ use crate::component::{Component, PerComponent};
 use super::calibration::Calibration;
 use super::cost::{Cost, RayKind};
 use super::offspring::Offspring;
+use super::place::Place;
 
 /// Seconds by which the operating system may lengthen a task of any size: the least standard deviation of a prediction.
-pub const JITTER_S: f64 = 1e-3;
+pub const JITTER_S: f64 = 2e-4;
 
 /// The standard deviation of a cost, as part of its mean, that is assumed before observations say otherwise; it counts
 /// as [`PRIOR_OBSERVATIONS`] of them. The paper's own errors (Table 3) are of this order.
@@ -61,10 +62,25 @@ pub struct ProfileCache {
     /// What rays spawned along complete paths, by what the paths were.
     children: BTreeMap<String, Family>,
     fresh_children: BTreeMap<String, Family>,
+    /// What rays cost at each place of a crex, by what the paths were.
+    places: BTreeMap<String, Places>,
+    fresh_places: BTreeMap<String, Places>,
 }
 
 /// The offspring of each kind of ray.
 type Family = [Offspring; 7];
+
+/// What is known of the places of a crex.
+type Places = BTreeMap<Place, PlaceCost>;
+
+/// What rays cost at a place of a crex.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlaceCost {
+    /// In rounds over the whole picture.
+    pub rays: Cost,
+    /// The same, for each nanosecond (in place of rays) that they would have taken at the cost of the picture's sprinkle.
+    pub pace: Cost,
+}
 
 impl ProfileCache {
     /// An empty cache. `scene` and `machine` say what its costs hold for: a hash of all that the scene was made from, and a
@@ -82,6 +98,8 @@ impl ProfileCache {
             fresh_writers: BTreeMap::new(),
             children: BTreeMap::new(),
             fresh_children: BTreeMap::new(),
+            places: BTreeMap::new(),
+            fresh_places: BTreeMap::new(),
         }
     }
 
@@ -113,6 +131,38 @@ impl ProfileCache {
     pub fn observe(&mut self, kind: RayKind, rays: u64, seconds: f64) {
         self.known[kind.index()].observe(rays, seconds);
         self.fresh[kind.index()].observe(rays, seconds);
+    }
+
+    /// Takes in that `rays` rays took `seconds` together at a place of a crex; `paths` as for
+    /// [`Self::observe_children`]. The kind's own cost is another matter.
+    pub(super) fn observe_place(&mut self, paths: &str, place: Place, rays: u64, seconds: f64) {
+        self.of_place(paths, place, |known| known.rays.observe(rays, seconds));
+    }
+
+    /// The same of how rounds compare with the sprinkle.
+    pub(super) fn observe_pace(&mut self, paths: &str, place: Place, expected_ns: u64, seconds: f64) {
+        self.of_place(paths, place, |known| known.pace.observe(expected_ns, seconds));
+    }
+
+    fn of_place(&mut self, paths: &str, place: Place, teach: impl Fn(&mut PlaceCost)) {
+        for places in [&mut self.places, &mut self.fresh_places] {
+            if !places.contains_key(paths) {
+                places.insert(paths.to_owned(), Places::new());
+            }
+            let known = places.get_mut(paths).expect("it was just put there");
+            teach(known.entry(place).or_default());
+        }
+    }
+
+    /// What is known of a place; none before anything was observed there.
+    #[must_use]
+    pub fn place(&self, paths: &str, place: Place) -> Option<&PlaceCost> {
+        self.places.get(paths)?.get(&place)
+    }
+
+    /// All that is known of places, by crex and limits.
+    pub fn places(&self) -> impl Iterator<Item = (&str, impl Iterator<Item = (Place, &PlaceCost)>)> {
+        self.places.iter().map(|(paths, places)| (paths.as_str(), places.iter().map(|(place, cost)| (*place, cost))))
     }
 
     /// Takes in what `parents` rays of a kind spawned, all on paths that ran through a whole crex. `paths` says which crex that
@@ -214,6 +264,14 @@ impl ProfileCache {
                 family.iter_mut().zip(fresh).for_each(|(known, fresh)| known.add(fresh));
             }
         }
+        for (paths, fresh) in &other.fresh_places {
+            for (&place, fresh) in fresh {
+                self.of_place(paths, place, |known| {
+                    known.rays.add(&fresh.rays);
+                    known.pace.add(&fresh.pace);
+                });
+            }
+        }
         for (kind, fresh) in other.fresh.iter().enumerate() {
             self.known[kind].add(fresh);
             self.fresh[kind].add(fresh);
@@ -234,6 +292,11 @@ impl ProfileCache {
         self.children.entry(paths.to_owned()).or_default()[kind.index()] = offspring;
     }
 
+    /// Sets what is known of a place, as it was stored.
+    pub(super) fn restore_place(&mut self, paths: &str, place: Place, cost: PlaceCost) {
+        self.places.entry(paths.to_owned()).or_default().insert(place, cost);
+    }
+
     /// Sets what is known of a writer, as it was stored.
     pub(super) fn restore_writer(&mut self, name: String, cost: Cost) {
         self.writers.insert(name, cost);
@@ -250,6 +313,7 @@ impl ProfileCache {
         self.fresh_errors.clear();
         self.fresh_writers.clear();
         self.fresh_children.clear();
+        self.fresh_places.clear();
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```json
 //! {
-//!   "format": "crex profile 2",
+//!   "format": "crex profile 3",
 //!   "scene": "<hash of what the scene was made from>",
 //!   "machine": "<processor, threads, program>",
 //!   "rays": {
@@ -10,6 +10,7 @@
 //!     "D": ...
 //!   },
 //!   "writers": {"zip": {"rays": 103680000, ...}},
+//!   "places": {"(TRD)* <limits>": {"T@1 run 2": {"rays": {"rays": 31000, ...}, "pace": {"rays": 44000000, ...}}, ...}},
 //!   "children": {"(TRD)* <limits>": {"primary": {"parents": 4800, "spawned": {"D": 3600, "T": 120}}, ...}},
 //!   "errors": [-0.4, 1.2]
 //! }
@@ -17,7 +18,10 @@
 //! `mean_s` and `spread_s` are seconds a ray, `effective` the number of equal observations that would say as much,
 //! `errors` those of past predictions in deviations, the oldest first. `writers` is the cost of writing pictures, by format
 //! or EXR's compression, and of other chores (`gather`, `develop`, `fill`), of which bytes are counted in place of rays, and of
-//! the `sprinkle`, of which nanoseconds are counted that its rays were expected to take. `children` holds, for a crex and the
+//! the `sprinkle`, of which nanoseconds are counted that its rays were expected to take. `places` holds, for a crex and the limits
+//! of its paths, what rays of rounds cost at each place: the letter, the byte at which it stands, and which of its runs it is (the
+//! 16th stands for all later ones). `pace` is the same for each nanosecond that they would have taken at the cost of their picture's
+//! sprinkle. `children` holds, for a crex and the
 //! limits of its paths, rays of complete paths and what they spawned. Kinds never observed are absent.
 
 use std::collections::BTreeMap;
@@ -36,10 +40,11 @@ use crate::component::{Component, PerComponent};
 use super::calibration::REMEMBERED;
 use super::cost::{Cost, RayKind};
 use super::offspring::Offspring;
-use super::profile::ProfileCache;
+use super::place::Place;
+use super::profile::{PlaceCost, ProfileCache};
 use crate::atomic::AtomicFile;
 
-const FORMAT: &str = "crex profile 2";
+const FORMAT: &str = "crex profile 3";
 
 /// How often and how long to wait for another run that is storing: a second in all.
 const PATIENCE: (u32, Duration) = (100, Duration::from_millis(10));
@@ -96,6 +101,8 @@ struct Stored {
     #[serde(default)]
     writers: BTreeMap<String, StoredCost>,
     #[serde(default)]
+    places: BTreeMap<String, BTreeMap<String, StoredPlace>>,
+    #[serde(default)]
     children: BTreeMap<String, BTreeMap<String, StoredOffspring>>,
     errors: Vec<f64>,
 }
@@ -107,6 +114,13 @@ struct StoredCost {
     effective: f64,
     mean_s: f64,
     spread_s: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct StoredPlace {
+    rays: StoredCost,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pace: Option<StoredCost>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -189,6 +203,7 @@ fn to_json(cache: &ProfileCache) -> String {
         machine: cache.machine().to_owned(),
         rays: costs.map(|(kind, cost)| (name(kind), stored_cost(cost))).collect(),
         writers: cache.writers().map(|(name, cost)| (name.to_owned(), stored_cost(cost))).collect(),
+        places: cache.places().map(|(paths, places)| (paths.to_owned(), places.map(stored_place).collect())).collect(),
         children: cache.children().map(|(paths, family)| (paths.to_owned(), stored_family(family))).collect(),
         errors: cache.calibration().errors().collect(),
     };
@@ -204,6 +219,11 @@ fn stored_family<'a>(family: impl Iterator<Item = (RayKind, &'a Offspring)>) -> 
         StoredOffspring { parents: offspring.parents(), spawned }
     };
     family.map(|(kind, offspring)| (name(kind), stored(offspring))).collect()
+}
+
+fn stored_place((place, PlaceCost { rays, pace }): (Place, &PlaceCost)) -> (String, StoredPlace) {
+    let pace = Some(stored_cost(pace)).filter(|pace| pace.rays > 0);
+    (place.to_string(), StoredPlace { rays: stored_cost(rays), pace })
 }
 
 fn stored_cost(cost: &Cost) -> StoredCost {
@@ -250,6 +270,13 @@ fn from_json(text: &str, path: &Path, scene: &str, machine: &str) -> Result<Prof
     for (key, stored) in stored.writers {
         let cost = known(&key, stored)?;
         cache.restore_writer(key, cost);
+    }
+    for (paths, places) in stored.places {
+        for (key, StoredPlace { rays, pace }) in places {
+            let place = key.parse().map_err(|_| refuse(&key, "expected primary or a place such as D@3 run 1"))?;
+            let pace = pace.map_or(Ok(Cost::default()), |pace| known(&key, pace))?;
+            cache.restore_place(&paths, place, PlaceCost { rays: known(&key, rays)?, pace });
+        }
     }
     for (paths, family) in stored.children {
         for (key, StoredOffspring { parents, spawned: counts }) in family {

@@ -5,8 +5,10 @@ use crate::crex::{Cursor, Program, Span, Task, ThresholdError};
 use crate::work::{BinOccupancy, Stage, Work, WorkReport};
 
 use super::budget::Budget;
-use super::cost::RayKind;
-use super::profile::{Prediction, ProfileCache};
+use super::cost::{Cost, RayKind};
+use super::here::PictureCosts;
+use super::place::Place;
+use super::profile::Prediction;
 use super::rows::{Skipped, StageRow};
 
 /// The part of a bin that is traced to learn what its rays cost: the paper's 1 %.
@@ -69,13 +71,13 @@ enum Pending {
 /// task runs.
 ///
 /// Call [`next`](Self::next), do the work, give [`report`](Self::report) what a probe or run did, again. Time between the
-/// two calls is what the work is taken to have cost, by the budget's clock. A decision looks at seven numbers and at no
+/// two calls is what the work is taken to have cost, by the budget's clock. A decision looks at a few numbers and at no
 /// ray.
 #[derive(Debug)]
-pub struct TimedScheduler<'a> {
+pub struct TimedScheduler<'a, 'p> {
     cursor: Cursor<'a>,
     budget: Budget<'a>,
-    profile: &'a mut ProfileCache,
+    costs: &'a mut PictureCosts<'p>,
     rows: Vec<StageRow>,
     /// Where the rows of the task begin that is under way.
     task_rows: usize,
@@ -84,20 +86,22 @@ pub struct TimedScheduler<'a> {
     phase: Phase,
     /// What the task was predicted to take from when it was decided on, if it could be.
     prediction: Option<Prediction>,
+    /// What of that falls to each of its components; to the first run of each, since later ones find nothing.
+    parts: PerComponent<Option<Prediction>>,
     /// Seconds that its runs have taken since.
     taken_s: f64,
     /// Probes for it: how many, and what those not yet kept did.
     probes: PerComponent<(u32, WorkReport)>,
     /// Seconds that its probes took.
-    probed_s: f64,
+    probed_s: PerComponent<f64>,
     /// What was handed out and when, not yet reported.
     pending: Option<(Pending, f64)>,
     /// A task was cut off: all that comes is skipped.
     over: bool,
 }
 
-impl<'a> TimedScheduler<'a> {
-    /// A walk along `program` within `budget`, that predicts by `profile` and teaches it. `thresholds` as for
+impl<'a, 'p> TimedScheduler<'a, 'p> {
+    /// A walk along `program` within `budget`, that predicts by `costs` and teaches them. `thresholds` as for
     /// [`Scheduler`](super::Scheduler).
     ///
     /// # Errors
@@ -106,7 +110,7 @@ impl<'a> TimedScheduler<'a> {
         program: &'a Program,
         thresholds: Option<&[f32]>,
         budget: Budget<'a>,
-        profile: &'a mut ProfileCache,
+        costs: &'a mut PictureCosts<'p>,
     ) -> Result<Self, ThresholdError> {
         let mut cursor = Cursor::new(program);
         if let Some(thresholds) = thresholds {
@@ -115,15 +119,16 @@ impl<'a> TimedScheduler<'a> {
         Ok(Self {
             cursor,
             budget,
-            profile,
+            costs,
             rows: Vec::new(),
             task_rows: 0,
             margin_s: (0.0, 0.0),
             phase: Phase::Under { runs: true },
             prediction: None,
+            parts: PerComponent::default(),
             taken_s: 0.0,
             probes: PerComponent::default(),
-            probed_s: 0.0,
+            probed_s: PerComponent::default(),
             pending: None,
             over: false,
         })
@@ -182,16 +187,19 @@ impl<'a> TimedScheduler<'a> {
         let mut report = WorkReport { seconds: self.budget.now_s() - since_s, ..*report };
         match pending {
             Pending::Probe(component) => {
-                self.learn(component, &report);
+                self.costs.profile_mut().observe(RayKind::Of(component), report.rays, report.seconds);
                 let (times, sum) = &mut self.probes[component];
                 *times += 1;
                 add(sum, &report);
-                self.probed_s += report.seconds;
+                self.probed_s[component] += report.seconds;
             }
             Pending::Run(stage) => {
-                self.learn(stage.component, &report);
+                self.costs.ran(Place::of(&stage), report.rays, report.seconds);
                 self.taken_s += report.seconds;
-                let (predicted_s, bound_s) = self.expected_s();
+                let (_, bound_s) = self.expected_s();
+                let part = self.parts[stage.component].take();
+                let part_s = part.map_or(0.0, |part| part.mean_s + self.probed_s[stage.component]);
+                let predicted_s = self.prediction.map(|_| part_s);
                 // What the probes did is the stage's now, and counted once.
                 let (_, kept) = &mut self.probes[stage.component];
                 add(&mut report, &std::mem::take(kept));
@@ -225,12 +233,12 @@ impl<'a> TimedScheduler<'a> {
         let Pending::Run(stage) = pending else {
             return;
         };
-        self.learn(stage.component, &WorkReport { seconds, ..*part });
+        self.costs.ran(Place::of(&stage), part.rays, seconds);
         self.taken_s += seconds;
         if let Some(prediction) = self.prediction
             && prediction.mean_s > 0.0
         {
-            self.profile.record(&prediction, self.taken_s.max(prediction.mean_s));
+            self.costs.record(&prediction, self.taken_s.max(prediction.mean_s));
         }
         for row in &mut self.rows[self.task_rows..] {
             row.report = WorkReport::default();
@@ -259,12 +267,9 @@ impl<'a> TimedScheduler<'a> {
     /// What the task under way is predicted to take, and not to exceed, with the seconds that its probes took already.
     fn expected_s(&self) -> (Option<f64>, Option<f64>) {
         let (bound_s, _) = self.margin_s;
-        let whole = |seconds: f64| self.prediction.map(|_| seconds + self.probed_s);
+        let probed_s: f64 = self.probed_s.iter().map(|(_, seconds)| seconds).sum();
+        let whole = |seconds: f64| self.prediction.map(|_| seconds + probed_s);
         (self.prediction.and_then(|prediction| whole(prediction.mean_s)), whole(bound_s))
-    }
-
-    fn learn(&mut self, component: Component, report: &WorkReport) {
-        self.profile.observe(RayKind::Of(component), report.rays, report.seconds);
     }
 
     /// A probe that the task needs before it can be predicted.
@@ -275,11 +280,11 @@ impl<'a> TimedScheduler<'a> {
         let left_s = self.budget.left_s();
         let component = task.components.iter().find(|&component| {
             let (times, _) = self.probes[component];
-            let unknown = times > 0 || self.profile.cost(RayKind::Of(component)).is_none();
-            unknown && times < PROBES && bins[component] > 0 && left_s > 0.0
+            let unknown = || self.costs.predict(place(task, component), bins[component]).is_none();
+            (times > 0 || unknown()) && times < PROBES && bins[component] > 0 && left_s > 0.0
         })?;
-        let costs = RayKind::ALL.into_iter().filter_map(|kind| self.profile.cost(kind));
-        let costliest_s = costs.map(super::cost::Cost::mean_s).fold(0.0, f64::max);
+        let costs = RayKind::ALL.into_iter().filter_map(|kind| self.costs.profile().cost(kind));
+        let costliest_s = costs.map(Cost::mean_s).fold(0.0, f64::max);
         let affordable = (PROBE_TIME * left_s / costliest_s).max(1.0);
         let share = (bins[component] as f64 * PROBE_SHARE / f64::from(PROBES)).ceil().max(LEAST_PROBE as f64);
         let rays = (share.min(affordable) as u64).min(bins[component]);
@@ -290,14 +295,16 @@ impl<'a> TimedScheduler<'a> {
     /// Whether the task runs.
     fn decide(&mut self, task: &Task, bins: &BinOccupancy) -> bool {
         let mut whole = Some(Prediction::default());
+        self.parts = PerComponent::default();
         for component in task.components.iter() {
-            let part = self.profile.predict(RayKind::Of(component), bins[component]);
+            let part = self.costs.predict(place(task, component), bins[component]);
+            self.parts[component] = part;
             whole = whole.zip(part).map(|(whole, part)| whole.and(part));
         }
         self.prediction = whole;
         let nothing_to_do = task.components.iter().all(|component| bins[component] == 0);
         let left_s = self.budget.left_s();
-        let bound_s = whole.map_or(f64::INFINITY, |whole| self.profile.bound_s(&whole));
+        let bound_s = whole.map_or(f64::INFINITY, |whole| self.costs.bound_s(&whole));
         self.margin_s = (bound_s, left_s);
         !self.over && (nothing_to_do || bound_s <= left_s)
     }
@@ -308,13 +315,19 @@ impl<'a> TimedScheduler<'a> {
             && self.phase == (Phase::Under { runs: true })
             && prediction.mean_s > 0.0
         {
-            self.profile.record(&prediction, self.taken_s);
+            self.costs.record(&prediction, self.taken_s);
         }
         self.phase = Phase::Weighing;
         self.taken_s = 0.0;
         self.probes = PerComponent::default();
-        self.probed_s = 0.0;
+        self.probed_s = PerComponent::default();
     }
+}
+
+/// Where a component of a task runs.
+fn place(task: &Task, component: Component) -> Place {
+    let (letter, run) = task.places[component];
+    Place::new(component, letter, run)
 }
 
 fn add(sum: &mut WorkReport, report: &WorkReport) {

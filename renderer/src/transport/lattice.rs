@@ -1,5 +1,7 @@
 //! An order of pixels in which every beginning is spread evenly over the picture.
 
+use std::ops::Range;
+
 /// Edge of the square of pixels that the order repeats, and the number of its ranks.
 const EDGE: usize = 16;
 
@@ -21,6 +23,29 @@ pub const fn rank(x: usize, y: usize) -> u16 {
     rank
 }
 
+/// Pixels of some ranks.
+pub(super) struct Lattice {
+    /// For each row of the square, a bit for each of its columns.
+    rows: [u16; EDGE],
+}
+
+impl Lattice {
+    pub(super) fn new(ranks: &Range<u16>) -> Self {
+        let holds = |x, y| u16::from(ranks.contains(&rank(x, y)));
+        Self { rows: std::array::from_fn(|y| (0..EDGE).map(|x| holds(x, y) << x).sum()) }
+    }
+
+    /// Whether there are any in a row of the picture.
+    pub(super) fn has_row(&self, y: usize) -> bool {
+        self.rows[y % EDGE] != 0
+    }
+
+    /// Whether a pixel is one of them.
+    pub(super) fn holds(&self, x: usize, y: usize) -> bool {
+        self.rows[y % EDGE] >> (x % EDGE) & 1 == 1
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -40,5 +65,12 @@ mod tests {
             }
         }
         assert_eq!(rank(35, 18), rank(3, 2));
+        for ranks in [0..1, 1..8, 64..128, 0..RANKS] {
+            let lattice = Lattice::new(&ranks);
+            for (x, y) in (0..40).flat_map(|y| (0..40).map(move |x| (x, y))) {
+                assert_eq!(lattice.holds(x, y), ranks.contains(&rank(x, y)));
+                assert!(lattice.has_row(y) || !lattice.holds(x, y));
+            }
+        }
     }
 }

@@ -14,7 +14,7 @@ use crate::work::{BinOccupancy, Stage, WorkReport};
 use super::bins::{RayBins, SpawnRecord};
 use super::dimension;
 use super::direct::Scratch;
-use super::lattice::{RANKS, rank};
+use super::lattice::{Lattice, RANKS};
 use super::modulation::{Choice, Rule};
 use super::ray::{PathRay, RayPath};
 use super::spawn::Spawner;
@@ -91,9 +91,14 @@ impl Parcel {
     ) -> WorkReport {
         let mut rays = 0;
         let mut spawner = spawner(tracer, &mut self.bins, &mut self.planes, false);
-        for pixel in 0..self.block.pixels() {
+        let lattice = Lattice::new(ranks);
+        let pixels = (0..self.block.height).filter(|row| lattice.has_row(self.block.y + row)).flat_map(|row| {
+            let first = row * self.block.width;
+            first..first + self.block.width
+        });
+        for pixel in pixels {
             let (x, y) = place(&self.block, pixel);
-            if !ranks.contains(&rank(x, y)) {
+            if !lattice.holds(x, y) {
                 continue;
             }
             let share = tracer.modulation.and_then(|modulation| modulation.share(x, y, name(x, y), tracer.seed));

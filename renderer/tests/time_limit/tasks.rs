@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use renderer::component::{Component, PerComponent};
 use renderer::crex::{Program, compile};
 use renderer::schedule::{
-    Budget, LEAST_PROBE, ManualClock, PROBE_SHARE, PROBES, ProfileCache, Skipped, StageRow, TimedScheduler, TimedWork,
+    Budget, LEAST_PROBE, ManualClock, PROBE_SHARE, PROBES, PictureCosts, ProfileCache, Skipped, StageRow, TimedScheduler, TimedWork,
     executed,
 };
 
@@ -216,7 +216,8 @@ fn a_task_that_is_cut_off_is_undone_whole_and_nothing_follows() {
     let mut profile = knowing(&prices);
     let clock = ManualClock::default();
     let budget = Budget::new(&clock, 100.0, 0.0);
-    let mut scheduler = TimedScheduler::new(&program, None, budget, &mut profile).expect("own thresholds");
+    let mut costs = PictureCosts::new(&mut profile, program.text());
+    let mut scheduler = TimedScheduler::new(&program, None, budget, &mut costs).expect("own thresholds");
     let hundred = |_| PerComponent::from_fn(|_| 100);
     let done = WorkReport { rays: 100, ..WorkReport::default() };
     let mut begun = Vec::new();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use renderer::component::{Component, PerComponent};
 use renderer::crex::Program;
-use renderer::schedule::{Budget, Clock, ManualClock, ProfileCache, RayKind, StageRow, TimedScheduler, TimedWork};
+use renderer::schedule::{Budget, Clock, ManualClock, PictureCosts, ProfileCache, RayKind, StageRow, TimedScheduler, TimedWork};
 use renderer::work::{BinOccupancy, WorkReport};
 
 use crate::scene::{Ray, Scene};
@@ -214,7 +214,8 @@ pub(crate) fn execute(
     let clock = ManualClock::default();
     let mut tracer = PricedTracer::new(scene, prices, &clock, seed);
     let budget = Budget::new(&clock, seconds, 0.0);
-    let mut scheduler = TimedScheduler::new(program, None, budget, profile).expect("own thresholds");
+    let mut costs = PictureCosts::new(profile, program.text());
+    let mut scheduler = TimedScheduler::new(program, None, budget, &mut costs).expect("own thresholds");
     let mut probes = Vec::new();
     while let Some(work) = scheduler.next(|threshold| tracer.admitted(threshold)) {
         if let TimedWork::Probe { component, rays, .. } = work {

@@ -146,10 +146,10 @@ fn what_is_skipped_leaves_nothing_in_the_rounds() {
 
 #[test]
 fn rounds_and_refinement_count_by_their_samples() {
-    // Nothing is skipped: two samples of rounds and two whole passes of refinement (14 levels of nine tiles, which take the
+    // Nothing is skipped: two samples of rounds and two whole passes of refinement (11 levels of nine tiles, which take the
     // sample numbers 2 and 3) are the picture of four samples, however they were traced.
     let room = room();
-    let record = TimedRecord { units: 14 * 9, ..one_round(2, &[true; 6]) };
+    let record = TimedRecord { units: 11 * 9, ..one_round(2, &[true; 6]) };
     let both = room.with("TRSMGD", settings(2), |renderer| renderer.replay(&record).unwrap());
     assert!((both.refined_samples - 2.0).abs() < 1e-12);
     close(&both.rendering.film, &room.render("TRSMGD", settings(4)).film);

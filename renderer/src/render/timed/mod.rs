@@ -12,19 +12,16 @@ mod round;
 
 use crate::color::Rgb;
 use crate::crex::{Program, ThresholdError};
-use crate::schedule::{Budget, ProfileCache};
+use crate::schedule::{Budget, PictureCosts, ProfileCache};
 use crate::transport::{Limits, Modulation, Rule, Tracer};
 use crate::work::WorkReport;
 
 use super::outcome::{Outcome, add_report, reached};
 use super::{RenderError, Renderer, Rendering};
 use develop::Merger;
+use ladder::SPRINKLED;
 use refine::Refinement;
 use round::Round;
-
-/// The part of the picture that is sprinkled with samples before anything is decided: levels of the ladder, 1/64 of the
-/// pixels.
-const SPRINKLED: u64 = 4;
 
 /// The part of the time that the sprinkle may take.
 const SPRINKLE_TIME: f64 = 0.1;
@@ -100,15 +97,16 @@ impl Renderer<'_> {
         let tracer = self.tracer();
         let complete = self.refining();
         let (end, known) = (budget, profile.clone());
+        let mut costs = PictureCosts::new(profile, paths(self.program, &self.settings.limits));
         let budget = end.with_more_reserve(self.chore_s(FILL, &known));
         let left_s = || budget.left_s();
         let mut refinement = Refinement::new(self, self.settings.samples);
         let tiles = self.tiles().len() as u64;
         let sprinkle_ends_s = budget.now_s() + SPRINKLE_TIME * budget.left_s();
         let sprinkle = || (sprinkle_ends_s - budget.now_s()).min(budget.left_s());
-        refinement.run(self, &complete, SPRINKLED * tiles, (&sprinkle, &left_s), profile)?;
+        refinement.run(self, &complete, SPRINKLED * tiles, (&sprinkle, &left_s), &mut costs)?;
         // What comes at the end will be as slow as what came first.
-        let slower = slower(&refinement, &known, profile);
+        let slower = slower(&refinement, &known, costs.profile_mut());
         let end = end.slowed(slower);
         let kept = |chore| end.with_more_reserve(slower * self.chore_s(chore, &known));
         let mut merger = Merger::new(self);
@@ -120,19 +118,19 @@ impl Renderer<'_> {
             let part = f64::from(samples) / f64::from(all - first);
             let whole = kept(FILL).with_more_reserve(slower * self.chore_s(GATHER, &known));
             let share = whole.with_more_reserve((1.0 - part) * whole.left_s().max(0.0));
-            let Some(round) = Round::run(self, &tracer, first, samples, (share, whole), profile)? else { break };
+            let Some(round) = Round::run(self, &tracer, first, samples, (share, whole), &mut costs)? else { break };
             let ended_s = round.ended_s;
             merger.add(round);
-            profile.observe_writer(GATHER, self.plane_bytes(), budget.now_s() - ended_s);
+            costs.profile_mut().observe_writer(GATHER, self.plane_bytes(), budget.now_s() - ended_s);
             first += samples;
         }
         let budget = kept(if merger.is_complete() { DEVELOP } else { FILL });
         let left_s = || budget.left_s();
-        refinement.run(self, &complete, u64::MAX, (&left_s, &left_s), profile)?;
+        refinement.run(self, &complete, u64::MAX, (&left_s, &left_s), &mut costs)?;
         let ended_s = budget.now_s();
         let chore = if merger.is_complete() || refinement.passes() > 0 { DEVELOP } else { FILL };
         let developed = self.developed(merger, refinement);
-        profile.observe_writer(chore, self.plane_bytes(), budget.now_s() - ended_s);
+        costs.profile_mut().observe_writer(chore, self.plane_bytes(), budget.now_s() - ended_s);
         Ok(developed)
     }
 
@@ -146,8 +144,9 @@ impl Renderer<'_> {
         let mut refinement = Refinement::new(self, self.settings.samples).without(&record.missing);
         // Nobody asks what this learns.
         let mut profile = ProfileCache::new("", "");
+        let mut costs = PictureCosts::new(&mut profile, "");
         let left_s = || f64::INFINITY;
-        refinement.run(self, &complete, record.units, (&left_s, &left_s), &mut profile)?;
+        refinement.run(self, &complete, record.units, (&left_s, &left_s), &mut costs)?;
         Ok(self.developed(merger, refinement))
     }
 

@@ -1,18 +1,20 @@
 //! Samples of the whole crex, tile by tile in the order of the ladder, for as long as there is time: every part of it that
 //! ends is a whole picture, coarse at first, and every sample in it is complete.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::crex::ThresholdError;
 use crate::film::{Block, Plane, Planes};
-use crate::schedule::{ProfileCache, RayKind};
+use crate::schedule::{Cost, PictureCosts, Place, ProfileCache, RayKind};
 use crate::transport::{Parcel, Tracer, Workspace, rank};
 use crate::work::WorkReport;
 
 use super::super::Renderer;
 use super::super::outcome::{Outcome, add_report};
-use super::ladder::{Level, scrambled};
+use super::ladder::{Level, SPRINKLED, scrambled, scrambled_blocks};
 
 /// Seconds left for something; negative once they are over.
 type Left<'a> = &'a (dyn Fn() -> f64 + Sync);
@@ -30,6 +32,9 @@ pub(super) struct Refinement {
     sums: Vec<Mutex<TileSums>>,
     /// The order of tiles within a level.
     order: Vec<usize>,
+    /// The same within a level of the sprinkle, where the tiles of a block are traced together; and the blocks.
+    sprinkled: Vec<usize>,
+    blocks: Vec<(Block, Range<u64>)>,
     /// The sample number of its first pass.
     first_sample: u32,
     /// Units that are behind it, a unit being a tile at a level: the first so many, all done but the `missing`.
@@ -51,10 +56,18 @@ impl Refinement {
             Mutex::new(TileSums { sums, weights: vec![0; tile.pixels()] })
         };
         let (sums, order) = (tiles.iter().map(empty).collect(), scrambled(&tiles));
+        let (mut sprinkled, mut blocks) = (Vec::with_capacity(tiles.len()), Vec::new());
+        for (block, mut places) in scrambled_blocks(&tiles) {
+            let first = sprinkled.len() as u64;
+            sprinkled.append(&mut places);
+            blocks.push((block, first..sprinkled.len() as u64));
+        }
         Self {
             tiles,
             sums,
             order,
+            sprinkled,
+            blocks,
             first_sample,
             units: 0,
             missing: Vec::new(),
@@ -97,30 +110,53 @@ impl Refinement {
         (expected_s > 0.0).then_some((taken_s, expected_s))
     }
 
-    /// Goes on until so many `units` are behind it or no time is left: a unit is begun while it is expected to fit into
-    /// `left_s`, and given up when `whole_s` is over. The very first unit is done in any case. What was learnt about costs goes
-    /// into the `profile`.
+    /// Goes on until so many `units` are behind it or no time is left: work is begun while it is expected to fit into
+    /// `left_s`, and given up when `whole_s` is over. The very first is done in any case. `costs` learn.
     pub(super) fn run(
         &mut self,
         renderer: &Renderer<'_>,
         tracer: &Tracer<'_>,
         units: u64,
         (left_s, whole_s): (Left<'_>, Left<'_>),
-        profile: &mut ProfileCache,
+        costs: &mut PictureCosts<'_>,
     ) -> Result<(), ThresholdError> {
-        let paths = super::paths(renderer.program, &renderer.settings.limits);
         let mut by_thread = vec![Learnt::default(); rayon::current_num_threads()];
         let mut in_time = true;
         while in_time && self.units < units {
             let index = self.units / self.tiles.len() as u64;
             let end = ((index + 1) * self.tiles.len() as u64).min(units);
-            in_time = self.run_level(renderer, tracer, Level::new(index), end, (left_s, whole_s), &mut by_thread)?;
+            in_time = self.run_level(renderer, tracer, index, end, (left_s, whole_s), &mut by_thread)?;
         }
         // One observation for each thread: those of single levels would tell more about the system's interruptions.
         for learnt in &by_thread {
-            learnt.teach(profile, &paths, by_thread.len() as f64);
+            learnt.teach(costs, by_thread.len() as f64);
         }
         Ok(())
+    }
+
+    /// Units from the next one on that are traced together: the tiles of a block in the sprinkle, later one by one.
+    fn chunks(&self, index: u64, end: u64) -> Vec<Range<u64>> {
+        let first = self.units;
+        if index >= SPRINKLED {
+            return (first..end).map(|unit| unit..unit + 1).collect();
+        }
+        let before = index * self.tiles.len() as u64;
+        let chunks = self.blocks.iter().map(|(_, units)| (before + units.start).max(first)..(before + units.end).min(end));
+        chunks.filter(|chunk| !chunk.is_empty()).collect()
+    }
+
+    /// The tiles of a chunk that are not to be left out, in one block if they are all of it.
+    fn areas(&self, index: u64, chunk: &Range<u64>) -> Vec<(Block, Vec<usize>)> {
+        let before = index * self.tiles.len() as u64;
+        let order = if index < SPRINKLED { &self.sprinkled } else { &self.order };
+        let wanted = chunk.clone().filter(|unit| !self.missing.contains(unit));
+        let places: Vec<usize> = wanted.map(|unit| order[(unit - before) as usize]).collect();
+        let whole = self.blocks.iter().find(|(_, units)| index < SPRINKLED && before + units.start == chunk.start);
+        let pixels: usize = places.iter().map(|&place| self.tiles[place].pixels()).sum();
+        match whole.filter(|(block, _)| block.pixels() == pixels) {
+            Some((block, _)) => vec![(*block, places)],
+            None => places.into_iter().map(|place| (self.tiles[place], vec![place])).collect(),
+        }
     }
 
     /// As [`Self::run`], within a level, which ends before unit `end`. Whether there was time for all of it.
@@ -128,14 +164,17 @@ impl Refinement {
         &mut self,
         renderer: &Renderer<'_>,
         tracer: &Tracer<'_>,
-        level: Level,
+        index: u64,
         end: u64,
         (left_s, whole_s): (Left<'_>, Left<'_>),
         by_thread: &mut [Learnt],
     ) -> Result<bool, ThresholdError> {
+        let level = Level::new(index);
         let first = self.units;
-        let unit_s = if self.spent.1 > 0.0 { self.spent.0 / self.spent.1 * level.share() } else { 0.0 };
-        let next = AtomicU64::new(first);
+        let chunks = self.chunks(index, end);
+        let longest = chunks.iter().map(|chunk| chunk.end - chunk.start).max().unwrap_or(0) as f64;
+        let chunk_s = if self.spent.1 > 0.0 { self.spent.0 / self.spent.1 * level.share() * longest } else { 0.0 };
+        let next = AtomicUsize::new(0);
         let out_of_time = AtomicBool::new(false);
         let given_up = Mutex::new(Vec::new());
         let sample = self.first_sample.saturating_add(level.pass);
@@ -145,44 +184,36 @@ impl Refinement {
             let (mut workspace, mut outcome, mut learnt) =
                 (Workspace::default(), Outcome::default(), Learnt::default());
             let mut parcel: Option<Parcel> = None;
+            let mut sums = Planes::default();
             loop {
                 let forced = first == 0 && next.load(Ordering::Relaxed) == 0;
-                if !forced && left_s() <= unit_s {
+                if !forced && left_s() <= chunk_s {
                     out_of_time.store(true, Ordering::Relaxed);
                 }
                 if !forced && out_of_time.load(Ordering::Relaxed) {
                     break;
                 }
-                let unit = next.fetch_add(1, Ordering::Relaxed);
-                if unit >= end {
-                    break;
-                }
-                if this.missing.contains(&unit) {
-                    continue;
-                }
-                let place = this.order[(unit % this.tiles.len() as u64) as usize];
-                let tile = this.tiles[place];
-                let parcel = parcel.get_or_insert_with(|| renderer.parcel(tile, &(0..0)));
-                parcel.restart(tile, sample..sample + 1, renderer.stored(), renderer.has_ambient());
-                let go = || unit == 0 || whole_s() > 0.0;
-                // A poisoned lock means that a thread panicked, and then so does this one.
-                let Some(done) = renderer.run_alone_while(tracer, &ranks, parcel, &mut workspace, &go)? else {
-                    given_up.lock().expect("no thread panicked").push(unit);
-                    continue;
-                };
-                learnt.take(&done);
-                outcome.add(done);
-                let mut sums = this.sums[place].lock().expect("no thread panicked");
-                parcel.add_to(&mut sums.sums, renderer.settings.ambient);
-                for (pixel, weight) in sums.weights.iter_mut().enumerate() {
-                    let rank = rank(tile.x + pixel % tile.width, tile.y + pixel / tile.width);
-                    *weight += u32::from(ranks.contains(&rank));
+                let Some(chunk) = chunks.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+                let go = || chunk.start == 0 || whole_s() > 0.0;
+                for (area, places) in this.areas(index, chunk) {
+                    let parcel = parcel.get_or_insert_with(|| renderer.parcel(area, &(0..0)));
+                    parcel.restart(area, sample..sample + 1, renderer.stored(), renderer.has_ambient());
+                    // A poisoned lock means that a thread panicked, and then so does this one.
+                    let Some(done) = renderer.run_alone_while(tracer, &ranks, parcel, &mut workspace, &go)? else {
+                        given_up.lock().expect("no thread panicked").extend(chunk.clone());
+                        break;
+                    };
+                    learnt.take(&done, index < SPRINKLED);
+                    outcome.add(done);
+                    sums.clear(area.pixels(), renderer.stored(), renderer.has_ambient());
+                    parcel.add_to(&mut sums, renderer.settings.ambient);
+                    places.iter().for_each(|&place| this.take_tile(place, &ranks, &sums, &area));
                 }
             }
             Ok((outcome, learnt))
         });
-        self.units = next.into_inner().min(end);
-        let mut given_up = given_up.into_inner().expect("no thread panicked");
+        self.units = chunks.get(next.into_inner()).map_or(end, |chunk| chunk.start);
+        let mut given_up: Vec<u64> = given_up.into_inner().expect("no thread panicked");
         let undone = given_up.len();
         self.missing.append(&mut given_up);
         self.missing.sort_unstable();
@@ -194,6 +225,17 @@ impl Refinement {
         }
         self.spent.1 += level.share() * (self.units - first - undone as u64) as f64;
         Ok(self.units == end && undone == 0)
+    }
+
+    /// Adds to a tile what was traced in the pixels of some ranks of the area around it.
+    fn take_tile(&self, place: usize, ranks: &Range<u16>, traced: &Planes, area: &Block) {
+        let tile = self.tiles[place];
+        let mut sums = self.sums[place].lock().expect("no thread panicked");
+        sums.sums.add_part(&tile, traced, area);
+        for (pixel, weight) in sums.weights.iter_mut().enumerate() {
+            let rank = rank(tile.x + pixel % tile.width, tile.y + pixel / tile.width);
+            *weight += u32::from(ranks.contains(&rank));
+        }
     }
 
     /// A tile's sums of a plane and the samples in them, pixel by pixel.
@@ -208,57 +250,63 @@ impl Refinement {
     }
 }
 
-/// What a thread's rays of each kind cost and spawned.
+/// What a thread's rays cost, in the sprinkle and later, at each place of the crex, and what those of each kind spawned.
 #[derive(Clone, Default)]
-struct Learnt([Kind; RayKind::ALL.len()]);
-
-#[derive(Clone, Copy, Default)]
-struct Kind {
-    /// Rays, and what they spawned.
-    report: WorkReport,
-    /// Those of them that were timed without an interruption.
-    timed_rays: u64,
+struct Learnt {
+    sprinkled: BTreeMap<Place, Cost>,
+    refined: BTreeMap<Place, Cost>,
+    reports: [WorkReport; RayKind::ALL.len()],
 }
 
 impl Learnt {
-    /// Takes in what a unit did. A stage of a unit is mostly a fraction of a millisecond: if it took many times what the others
+    /// Takes in what a chunk did. A stage of it is mostly a fraction of a millisecond: if it took many times what the others
     /// did, the thread had to wait for a processor, which says nothing of rays.
-    fn take(&mut self, unit: &Outcome) {
-        let rows = unit.rows.iter().map(|row| (RayKind::Of(row.stage.component), &row.report));
-        for (kind, report) in std::iter::once((RayKind::Primary, &unit.primary)).chain(rows) {
+    fn take(&mut self, chunk: &Outcome, sprinkled: bool) {
+        let costs = if sprinkled { &mut self.sprinkled } else { &mut self.refined };
+        let rows = chunk.rows.iter().map(|row| (Place::of(&row.stage), &row.report));
+        for (place, report) in std::iter::once((Place::PRIMARY, &chunk.primary)).chain(rows) {
             if report.rays == 0 {
                 continue;
             }
-            let Kind { report: sum, timed_rays } = &mut self.0[kind.index()];
-            add_report(sum, &WorkReport { seconds: 0.0, ..*report });
-            let expected_s = sum.seconds * report.rays as f64 / (*timed_rays as f64).max(1.0);
-            if *timed_rays > 0 && expected_s > INTERRUPTED_S + INTERRUPTED * report.seconds {
+            let counts = WorkReport { seconds: 0.0, ..*report };
+            add_report(&mut self.reports[place.kind().index()], &counts);
+            let cost = costs.entry(place).or_default();
+            let expected_s = cost.mean_s() * report.rays as f64;
+            if cost.rays() > 0 && expected_s > INTERRUPTED_S + INTERRUPTED * report.seconds {
                 // It was the others.
-                (*timed_rays, sum.seconds) = (0, 0.0);
+                *cost = Cost::default();
             }
-            if *timed_rays == 0 || report.seconds <= INTERRUPTED_S + INTERRUPTED * expected_s {
-                *timed_rays += report.rays;
-                sum.seconds += report.seconds;
+            if cost.rays() == 0 || report.seconds <= INTERRUPTED_S + INTERRUPTED * expected_s {
+                cost.observe(report.rays, report.seconds);
             }
         }
     }
 
     fn add(&mut self, other: &Self) {
-        for (kind, more) in self.0.iter_mut().zip(&other.0) {
-            add_report(&mut kind.report, &more.report);
-            kind.timed_rays += more.timed_rays;
+        for (costs, more) in [(&mut self.sprinkled, &other.sprinkled), (&mut self.refined, &other.refined)] {
+            more.iter().for_each(|(place, more)| costs.entry(*place).or_default().add(more));
         }
+        self.reports.iter_mut().zip(&other.reports).for_each(|(report, more)| add_report(report, more));
     }
 
-    /// Teaches the profile: so many threads share the work, so a ray takes that part of its thread's time.
-    fn teach(&self, profile: &mut ProfileCache, paths: &str, threads: f64) {
-        for (kind, Kind { report, timed_rays }) in RayKind::ALL.into_iter().zip(&self.0) {
-            profile.observe(kind, *timed_rays, report.seconds / threads);
-            profile.observe_children(paths, kind, report.rays, &report.spawned);
+    /// Teaches: so many threads share the work, so a ray takes that part of its thread's time.
+    fn teach(&self, costs: &mut PictureCosts<'_>, threads: f64) {
+        for (&place, cost) in &self.sprinkled {
+            costs.sprinkled(place, &cost.scaled(threads.recip()));
+        }
+        let paths = costs.paths().to_owned();
+        let profile = costs.profile_mut();
+        for (kind, report) in RayKind::ALL.into_iter().zip(&self.reports) {
+            let all = self.sprinkled.iter().chain(&self.refined).filter(|(place, _)| place.kind() == kind);
+            let (rays, seconds) = all.fold((0, 0.0), |(rays, seconds), (_, cost)| {
+                (rays + cost.rays(), seconds + cost.mean_s() * cost.rays() as f64)
+            });
+            profile.observe(kind, rays, seconds / threads);
+            profile.observe_children(&paths, kind, report.rays, &report.spawned);
         }
     }
 }
 
-/// A stage of a unit that took longer than so many seconds and so many times what it should was interrupted.
+/// A stage of a chunk that took longer than so many seconds and so many times what it should was interrupted.
 const INTERRUPTED_S: f64 = 1e-3;
 const INTERRUPTED: f64 = 8.0;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::component::{Component, PerComponent};
 use crate::crex::ThresholdError;
 use crate::film::Planes;
-use crate::schedule::{Budget, ProfileCache, RayKind, Scheduler, Skipped, TimedScheduler, TimedWork};
+use crate::schedule::{Budget, PictureCosts, Place, Scheduler, Skipped, TimedScheduler, TimedWork};
 use crate::transport::{Parcel, Tracer, Workspace};
 use crate::work::{BinOccupancy, Stage, StageKey, Work, WorkReport};
 
@@ -63,12 +63,12 @@ impl Round {
         first_sample: u32,
         samples: u32,
         budgets: (Budget<'_>, Budget<'_>),
-        profile: &mut ProfileCache,
+        costs: &mut PictureCosts<'_>,
     ) -> Result<Option<Self>, ThresholdError> {
         let (share, whole) = budgets;
         let pixels = (renderer.settings.width * renderer.settings.height) as u64 * u64::from(samples);
-        let predicted = profile.predict(RayKind::Primary, pixels);
-        if predicted.is_none_or(|predicted| profile.bound_s(&predicted) > share.left_s()) {
+        let predicted = costs.predict(Place::PRIMARY, pixels);
+        if predicted.is_none_or(|predicted| costs.bound_s(&predicted) > share.left_s()) {
             return Ok(None);
         }
         let mut batch = Batch::new(renderer, tracer, first_sample, samples);
@@ -77,14 +77,14 @@ impl Round {
         let parcel_s = predicted.map_or(0.0, |it| it.mean_s) / batch.parcels.len() as f64 * threads;
         let (primary, tiles) = batch.trace_primary(batch.parcels.len(), &|| whole.left_s() > parcel_s);
         let primary = WorkReport { seconds: whole.now_s() - begun_s, ..primary };
-        profile.observe(RayKind::Primary, primary.rays, primary.seconds);
+        costs.ran(Place::PRIMARY, primary.rays, primary.seconds);
         if let Some(predicted) = predicted {
-            profile.record(&predicted, primary.seconds);
+            costs.record(&predicted, primary.seconds);
         }
         let mut rows = Vec::new();
         let mut stopped = Vec::new();
         if tiles == batch.parcels.len() {
-            let mut scheduler = TimedScheduler::new(renderer.program, renderer.thresholds, share, profile)?;
+            let mut scheduler = TimedScheduler::new(renderer.program, renderer.thresholds, share, costs)?;
             while let Some(work) = scheduler.next(|threshold| batch.admitted(threshold)) {
                 match work {
                     TimedWork::Release => batch.parcels.par_iter_mut().for_each(Parcel::release),
@@ -237,7 +237,7 @@ impl<'a, 'r> Batch<'a, 'r> {
 
     /// Runs a stage within the time. If that ends before the stage does, its task leaves nothing behind: it is undone, or, if
     /// nobody thought that likely enough to pay for a copy, all that the round has brought is given up but its primary rays.
-    fn run_timed(&mut self, stage: &Stage, scheduler: &mut TimedScheduler<'_>, whole: Budget<'_>) {
+    fn run_timed(&mut self, stage: &Stage, scheduler: &mut TimedScheduler<'_, '_>, whole: Budget<'_>) {
         if scheduler.begins_task() {
             self.before = (scheduler.risk() > RISKY).then(|| self.saved());
         }
