@@ -4,14 +4,15 @@ use glam::Vec3;
 
 use crate::raster::Raster;
 
-/// Gives every pixel whose `known` is false a value from known ones nearby: the pull-push interpolation of S. J. Gortler,
+/// Gives every pixel that is not wholly `known` a value from those nearby as well: the pull-push interpolation of S. J. Gortler,
 /// R. Grzeszczuk, R. Szeliski and M. F. Cohen, "The Lumigraph", SIGGRAPH 1996, section 3.3. A value is a weighted mean of
-/// known values, so it lies between them; known pixels keep theirs. Without any known pixel all are black.
+/// known values, so it lies between them; wholly known pixels keep theirs. Without any known pixel all are black.
 ///
-/// `known` has a value for each pixel, row by row.
-pub fn fill(plane: &mut Raster<Vec3>, known: &[bool]) {
+/// `known` has a weight in [0, 1] for each pixel, row by row: 0 if nothing is known of it, 1 if its value is to stay as it is, and
+/// between them the part that its own value has in what it is to be.
+pub fn fill(plane: &mut Raster<Vec3>, known: &[f32]) {
     // Nothing to fill, or nothing to fill in with.
-    if known.iter().all(|known| *known) || plane.values().iter().all(|value| *value == Vec3::ZERO) {
+    if known.iter().all(|known| *known >= 1.0) || plane.values().iter().all(|value| *value == Vec3::ZERO) {
         return;
     }
     let mut levels = vec![Layer::finest(plane, known)];
@@ -26,7 +27,7 @@ pub fn fill(plane: &mut Raster<Vec3>, known: &[bool]) {
         coarse = layer;
     }
     for ((pixel, known), (value, _)) in plane.values_mut().iter_mut().zip(known).zip(coarse.values) {
-        if !known {
+        if *known < 1.0 {
             *pixel = value;
         }
     }
@@ -41,9 +42,9 @@ struct Layer {
 }
 
 impl Layer {
-    fn finest(plane: &Raster<Vec3>, known: &[bool]) -> Self {
+    fn finest(plane: &Raster<Vec3>, known: &[f32]) -> Self {
         let values = plane.values().iter().zip(known);
-        let values = values.map(|(value, known)| if *known { (*value, 1.0) } else { (Vec3::ZERO, 0.0) }).collect();
+        let values = values.map(|(value, known)| (if *known > 0.0 { *value } else { Vec3::ZERO }, *known)).collect();
         Self { width: plane.width(), height: plane.height(), values }
     }
 
@@ -117,17 +118,20 @@ mod tests {
             rarity in 1..200u64,
         ) {
             let hash = |i: usize| (seed ^ i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33;
-            let known: Vec<bool> = (0..width * height).map(|i| i == 0 || hash(i) % rarity == 0).collect();
+            // Some known wholly, some in part.
+            let part = |i: usize| [1.0, 0.125][usize::from(hash(i + 3) % 3 == 0)];
+            let is_known = |i: usize| i == 0 || hash(i) % rarity == 0;
+            let known: Vec<f32> = (0..width * height).map(|i| if is_known(i) { part(i) } else { 0.0 }).collect();
             let values = (0..width * height).map(|i| Vec3::splat(hash(i + 7) as f32 / 1e9));
             let values: Vec<Vec3> = values.collect();
             let mut plane = Raster::from_values(width, height, values.clone()).expect("its size");
             fill(&mut plane, &known);
-            let of_known = || values.iter().zip(&known).filter(|(_, known)| **known).map(|(value, _)| value.x);
+            let of_known = || values.iter().zip(&known).filter(|(_, known)| **known > 0.0).map(|(value, _)| value.x);
             let least = of_known().fold(f32::INFINITY, f32::min);
             let most = of_known().fold(0.0, f32::max);
             for ((value, before), known) in plane.values().iter().zip(&values).zip(&known) {
                 prop_assert!(value.x >= least * (1.0 - 1e-5) && value.x <= most * (1.0 + 1e-5), "{} {least} {most}", value.x);
-                prop_assert!(!known || value == before);
+                prop_assert!(*known < 1.0 || value == before);
             }
         }
     }
@@ -137,7 +141,8 @@ mod tests {
         // Every fourth pixel of a ramp of slope 1 a pixel is known; away from the border the fill cannot be off by more than
         // the distance to what is known.
         let ramp: Vec<Vec3> = (0..64 * 64).map(|i| Vec3::splat((i % 64) as f32)).collect();
-        let known: Vec<bool> = (0..64 * 64).map(|i| (i % 64) % 4 == 0 && (i / 64) % 4 == 0).collect();
+        let lattice = |i: usize| (i % 64) % 4 == 0 && (i / 64) % 4 == 0;
+        let known: Vec<f32> = (0..64 * 64).map(|i| f32::from(u8::from(lattice(i)))).collect();
         let mut plane = Raster::from_values(64, 64, ramp.clone()).expect("its size");
         fill(&mut plane, &known);
         for (i, (value, before)) in plane.values().iter().zip(&ramp).enumerate() {
@@ -148,9 +153,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_half_known_is_a_mean_with_its_neighbours() {
+        // Noise of deviation 1 about 5, an eighth of each pixel known: sixteen of them make two whole ones.
+        let noise = |i: usize| if (i.wrapping_mul(0x9e37_79b9) >> 7) % 2 == 0 { 6.0 } else { 4.0 };
+        let values = (0..64 * 64).map(|i| Vec3::splat(noise(i))).collect();
+        let mut plane = Raster::from_values(64, 64, values).expect("its size");
+        fill(&mut plane, &[0.125; 64 * 64]);
+        let deviation = |v: &Vec3| f64::from(v.x - 5.0).powi(2);
+        let spread = (plane.values().iter().map(deviation).sum::<f64>() / 4096.0).sqrt();
+        assert!(spread < 0.5, "{spread}");
+    }
+
+    #[test]
     fn nothing_known_is_black() {
         let mut plane = Raster::filled(5, 3, Vec3::ONE);
-        fill(&mut plane, &[false; 15]);
+        fill(&mut plane, &[0.0; 15]);
         assert!(plane.values().iter().all(|value| *value == Vec3::ZERO));
     }
 }

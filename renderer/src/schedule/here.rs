@@ -102,12 +102,15 @@ impl<'p> PictureCosts<'p> {
             let pace = known.map(|known| known.pace).filter(|pace| pace.rays() > 0);
             let here = (self.pace.0 / (self.pace.1 + (PRIOR_PACE * PRIOR_PACE).recip())).exp();
             let here = if place == Place::PRIMARY { 1.0 } else { here };
-            let (times, spread) = pace.map_or((here, PRIOR_PACE), |pace| (1e9 * pace.mean_s(), shrunk(&pace, PRIOR_PACE)));
+            let (times, spread) =
+                pace.map_or((here, PRIOR_PACE), |pace| (1e9 * pace.mean_s(), shrunk(&pace, PRIOR_PACE)));
             (cost.mean_s() * times, spread * spread + sampling(cost))
         });
-        let of_rounds = self.rounds.get(&place).filter(|cost| cost.rays() > 0).map(|cost| {
-            (cost.mean_s(), ROUND_SPREAD * ROUND_SPREAD + sampling_of(cost.rays()))
-        });
+        let of_rounds = self
+            .rounds
+            .get(&place)
+            .filter(|cost| cost.rays() > 0)
+            .map(|cost| (cost.mean_s(), ROUND_SPREAD * ROUND_SPREAD + sampling_of(cost.rays())));
         let of_place = of_place.map(|(mean_s, spread)| {
             let Some((other_s, sampling)) = of_sprinkle else { return (mean_s, spread) };
             let beyond = ((mean_s / other_s).ln().powi(2) - sampling).max(0.0);

@@ -25,7 +25,9 @@ pub use executed::{Executed, executed};
 pub use here::PictureCosts;
 pub use offspring::Offspring;
 pub use place::Place;
-pub use profile::{JITTER_S, KEPT_DEVIATIONS, MOST_EXCESS, PRIOR_OBSERVATIONS, PRIOR_SPREAD, PlaceCost, Prediction, ProfileCache};
+pub use profile::{
+    JITTER_S, KEPT_DEVIATIONS, MOST_EXCESS, PRIOR_OBSERVATIONS, PRIOR_SPREAD, PlaceCost, Prediction, ProfileCache,
+};
 pub use profile_file::ProfileError;
 pub use rows::{Skipped, StageRow, merge_rows};
 pub use scheduler::Scheduler;

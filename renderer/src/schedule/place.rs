@@ -84,7 +84,9 @@ mod tests {
             assert_eq!(place.to_string().parse(), Ok(place));
         }
         assert_eq!(Place::new(Component::Diffuse, 3, 1000), Place::new(Component::Diffuse, 3, LAST_RUN));
-        for text in ["", "D", "D@", "D@1", "D@1 run ", "D@1 run 0", "D@01 run 1", "DD@1 run 1", "D@1 run 17", "x@1 run 1"] {
+        for text in
+            ["", "D", "D@", "D@1", "D@1 run ", "D@1 run 0", "D@01 run 1", "DD@1 run 1", "D@1 run 17", "x@1 run 1"]
+        {
             assert_eq!(text.parse::<Place>(), Err(NoPlace), "{text}");
         }
     }

@@ -3,7 +3,7 @@
 use std::fs;
 
 use renderer::component::{Component, PerComponent};
-use renderer::schedule::{ProfileCache, ProfileError, RayKind};
+use renderer::schedule::{Cost, PictureCosts, Place, ProfileCache, ProfileError, RayKind};
 
 fn learn(profile: &mut ProfileCache, rays: u64) {
     let spawned = PerComponent::from_fn(|component| rays / (1 + component as u64));
@@ -11,8 +11,18 @@ fn learn(profile: &mut ProfileCache, rays: u64) {
     profile.observe(RayKind::Of(Component::Diffuse), rays, rays as f64 * 3e-6 + 1e-3);
     profile.observe_children("D", RayKind::Primary, rays, &spawned);
     profile.observe_children("T", RayKind::Of(Component::Diffuse), 2 * rays, &spawned);
+    let mut costs = PictureCosts::new(profile, "T");
+    let mut sprinkled = Cost::default();
+    sprinkled.observe(100, 4e-4);
+    costs.sprinkled(second(), &sprinkled);
+    costs.ran(second(), rays, rays as f64 * 5e-6);
     let prediction = profile.predict(RayKind::Primary, 1000).expect("known");
     profile.record(&prediction, prediction.mean_s * 1.5);
+}
+
+/// The second run of a T.
+fn second() -> Place {
+    Place::new(Component::Transmitted, 0, 2)
 }
 
 #[test]
@@ -43,6 +53,13 @@ fn what_is_stored_is_read_back() {
     assert_eq!(children(&again), children(&profile));
     assert_eq!((again.paths_seen("D"), again.paths_seen("T"), again.paths_seen("TD")), (71_000, 0, 0));
     assert_eq!(again.children_per_ray("T", RayKind::Of(Component::Diffuse), Component::Diffuse), 0.5);
+    let place = |profile: &ProfileCache| {
+        let known = *profile.place("T", second()).expect("learnt");
+        assert!(profile.place("TT", second()).is_none() && profile.place("T", Place::PRIMARY).is_none());
+        [known.rays, known.pace].map(|cost| (cost.rays(), cost.observations(), cost.mean_s().to_bits()))
+    };
+    assert_eq!(place(&again), place(&profile));
+    assert_eq!(place(&again)[0].0, 71_000);
     // Stored again without news it says the same.
     let before = fs::read_to_string(&path).expect("text");
     ProfileCache::load(&path, "scene", "machine").expect("read").save(&path).expect("stored");
@@ -78,7 +95,7 @@ fn what_is_no_profile_is_refused_by_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("profile.json");
     let head =
-        "{\"format\": \"crex profile 2\", \"scene\": \"scene\", \"machine\": \"machine\", \"errors\": [],\n\"rays\": {";
+        "{\"format\": \"crex profile 3\", \"scene\": \"scene\", \"machine\": \"machine\", \"errors\": [],\n\"rays\": {";
     let cost = |mean: &str| {
         format!("{{\"rays\": 5, \"observations\": 1, \"effective\": 1, \"mean_s\": {mean}, \"spread_s\": 0}}")
     };
@@ -89,6 +106,8 @@ fn what_is_no_profile_is_refused_by_line() {
         (format!("{head}\n\n\"Q\": {}}}}}", cost("1")), 4),
         (format!("{head}\n\"D\": {}}}}}", cost("1e999")), 3),
         (format!("{head}\n\"D\": {{}}}}}}"), 3),
+        (format!("{head}}},\n\"places\": {{\"D\": {{\n\"D@0 run 0\": {{\"rays\": {}}}}}}}}}", cost("1")), 4),
+        (format!("{head}}},\n\"places\": {{\"D\": {{\n\"D@0 run 1\": {{\"rays\": {}}}}}}}}}", cost("-1")), 4),
         (format!("{head}}},\n\"children\": {{\"D\": {{\n\"Q\": {{\"parents\": 1, \"spawned\": {{}}}}}}}}}}"), 4),
         (format!("{head}}},\n\"children\": {{\"D\": {{\"D\": {{\"parents\": 1, \"spawned\":\n{{\"Q\": 1}}}}}}}}}}"), 4),
     ] {
@@ -98,6 +117,11 @@ fn what_is_no_profile_is_refused_by_line() {
     }
     fs::write(&path, format!("{head}\n\"D\": {}}}}}", cost("1"))).expect("written");
     ProfileCache::load(&path, "scene", "machine").expect("a profile");
+    // What an earlier program stored has other numbers in it.
+    let earlier = fs::read_to_string(&path).expect("text").replace("crex profile 3", "crex profile 2");
+    fs::write(&path, earlier).expect("written");
+    let error = ProfileCache::load(&path, "scene", "machine").expect_err("another format");
+    assert!(error.to_string().contains("format \"crex profile 2\", not \"crex profile 3\""), "{error}");
 }
 
 #[test]
@@ -123,6 +147,7 @@ fn runs_that_store_at_the_same_time_lose_nothing() {
     assert!((cost.mean_s() - 1e-6).abs() < 1e-15);
     assert_eq!(profile.calibration().errors().count() as u64, RUNS * FRAMES);
     assert_eq!(profile.paths_seen("D"), RUNS * FRAMES * 1000);
+    assert_eq!(profile.place("T", second()).map(|known| known.rays.rays()), Some(RUNS * FRAMES * 1000));
 }
 
 #[test]

@@ -19,7 +19,8 @@ fn bounds_hold_as_often_as_they_say() {
         for frame in 0..400 {
             let pixels = 200 + (dice.uniform() * 400.0) as usize;
             let scene = Scene { importance: vec![1.0; pixels], spawning: Spawning::Each { length: 1 } };
-            let prices = Prices { micros: PerComponent::from_fn(|component| 50 + 30 * component as u64), noise };
+            let prices =
+                Prices { micros: PerComponent::from_fn(|component| 50 + 30 * component as u64), noise, deeper: 1.0 };
             let factor = profile.calibration().factor();
             execute(&program, &scene, &prices, 1e6, &mut profile, frame);
             // The frame's errors are the latest, in deviations; its bounds added `factor` of them, or nearly: within
@@ -48,7 +49,8 @@ fn deadlines_are_missed_by_little_and_seldom() {
     for run in 0..RUNS {
         let pixels = 200 + (dice.uniform() * 400.0) as usize;
         let scene = Scene { importance: vec![1.0; pixels], spawning: Spawning::Each { length: 2 } };
-        let prices = Prices { micros: PerComponent::from_fn(|component| 50 + 40 * component as u64), noise: 0.05 };
+        let prices =
+            Prices { micros: PerComponent::from_fn(|component| 50 + 40 * component as u64), noise: 0.05, deeper: 1.0 };
         let bound = 0.02 * (1.0f64 / 0.02).powf(dice.uniform());
         let timed = execute(&program, &scene, &prices, bound, &mut profile, run);
         missed += u32::from(timed.end_s > bound);

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use renderer::component::{Component, PerComponent};
 use renderer::crex::{Program, compile};
 use renderer::schedule::{
-    Budget, LEAST_PROBE, ManualClock, PROBE_SHARE, PROBES, PictureCosts, ProfileCache, Skipped, StageRow, TimedScheduler, TimedWork,
-    executed,
+    Budget, LEAST_PROBE, ManualClock, PROBE_SHARE, PROBES, PictureCosts, ProfileCache, Skipped, StageRow,
+    TimedScheduler, TimedWork, executed,
 };
 
 use renderer::work::WorkReport;
@@ -24,7 +24,11 @@ fn even(pixels: usize, length: usize) -> Scene {
 /// Prices in milliseconds a ray, by letter.
 fn prices(given: &[(char, u64)]) -> Prices {
     let of = |component: Component| given.iter().find(|(letter, _)| *letter == component.letter());
-    Prices { micros: PerComponent::from_fn(|component| of(component).map_or(1000, |(_, ms)| ms * 1000)), noise: 0.0 }
+    Prices {
+        micros: PerComponent::from_fn(|component| of(component).map_or(1000, |(_, ms)| ms * 1000)),
+        noise: 0.0,
+        deeper: 1.0,
+    }
 }
 
 fn run(crex: &str, scene: &Scene, prices: &Prices, seconds: f64) -> Timed {
@@ -111,12 +115,39 @@ fn nothing_is_known_so_a_hundredth_is_probed() {
 }
 
 #[test]
+fn every_place_is_predicted_by_what_it_cost_before() {
+    // Rays cost thrice as much from generation to generation, R ten times what T and S do.
+    let mut given = prices(&[('R', 10)]);
+    given.deeper = 3.0;
+    let scene = even(200, 3);
+    let program = compile("T[RS]T[RS]").expect("a crex");
+    let mut profile = knowing(&given);
+    (0..20).for_each(|seed| drop(execute(&program, &scene, &given, 1e6, &mut profile, seed)));
+    let timed = execute(&program, &scene, &given, 1e6, &mut profile, 1);
+    assert_eq!(timed.rows.len(), 6);
+    for row in &timed.rows {
+        let predicted = row.predicted_s.expect("it was predicted");
+        // Members of a group each by themselves.
+        assert!((predicted / row.report.seconds - 1.0).abs() < 1e-6, "{} {predicted}", row.stage.component);
+    }
+    // The bound is the whole group's.
+    assert_eq!(timed.rows[1].bound_s, timed.rows[2].bound_s);
+    assert!(timed.rows[1].bound_s > timed.rows[1].predicted_s);
+    // By component alone the two T would have had one cost a ray.
+    let a_ray = |row: &StageRow| row.report.seconds / row.report.rays as f64;
+    assert!(a_ray(&timed.rows[3]) > 1.5 * a_ray(&timed.rows[0]));
+}
+
+#[test]
 fn probes_of_a_skipped_task_leave_nothing_behind() {
     let scene = even(20_000, 2);
     let program = compile("D[GS]T").expect("a crex");
     // T is a thousand times cheaper than the rest, of which each takes 20 s.
-    let prices =
-        Prices { micros: PerComponent::from_fn(|c| if c == Component::Transmitted { 1 } else { 1000 }), noise: 0.0 };
+    let prices = Prices {
+        micros: PerComponent::from_fn(|c| if c == Component::Transmitted { 1 } else { 1000 }),
+        noise: 0.0,
+        deeper: 1.0,
+    };
     let timed = execute(&program, &scene, &prices, 5.0, &mut ProfileCache::new("scene", "machine"), 1);
     assert_eq!(timed.counts(), "D- G- S- T20000");
     assert!(timed.wasted > 0, "it was probed");
@@ -186,7 +217,7 @@ proptest! {
     ) {
         let crex = text(&items);
         let program = compile(&crex).expect("a crex");
-        let prices = Prices { micros: PerComponent::from_fn(|component| costs[component as usize]), noise: 0.0 };
+        let prices = Prices { micros: PerComponent::from_fn(|component| costs[component as usize]), noise: 0.0, deeper: 1.0 };
         let mut profile = if known { knowing(&prices) } else { ProfileCache::new("", "") };
         let bound = f64::from(bound_ms) / 1000.0;
         let timed = execute(&program, &scene, &prices, bound, &mut profile, 1);

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use renderer::component::{Component, PerComponent};
 use renderer::crex::Program;
-use renderer::schedule::{Budget, Clock, ManualClock, PictureCosts, ProfileCache, RayKind, StageRow, TimedScheduler, TimedWork};
+use renderer::schedule::{
+    Budget, Clock, ManualClock, PictureCosts, ProfileCache, RayKind, StageRow, TimedScheduler, TimedWork,
+};
 use renderer::work::{BinOccupancy, WorkReport};
 
 use crate::scene::{Ray, Scene};
@@ -35,12 +37,14 @@ pub(crate) struct Prices {
     pub(crate) micros: PerComponent<u64>,
     /// Relative deviation of a run's cost.
     pub(crate) noise: f64,
+    /// How many times as much a ray costs as its parent would.
+    pub(crate) deeper: f64,
 }
 
 impl Prices {
     /// The same for each component, without noise.
     pub(crate) fn flat(micros: u64) -> Self {
-        Self { micros: PerComponent::from_fn(|_| micros), noise: 0.0 }
+        Self { micros: PerComponent::from_fn(|_| micros), noise: 0.0, deeper: 1.0 }
     }
 }
 
@@ -102,7 +106,8 @@ impl<'s> PricedTracer<'s> {
     /// Lets the time pass that rays take, and says what they spawn.
     fn trace(&mut self, component: Component, rays: &[Ray]) -> WorkReport {
         let scale = (1.0 + self.prices.noise * self.dice.normal()).max(0.0);
-        let micros = (rays.len() as u64 * self.prices.micros[component]) as f64 * scale;
+        let depth = |ray: &Ray| self.prices.deeper.powi(ray.steps.len() as i32 - 1);
+        let micros = rays.iter().map(depth).sum::<f64>() * self.prices.micros[component] as f64 * scale;
         self.clock.advance_ns((micros * 1000.0) as u64);
         let mut report = WorkReport { rays: rays.len() as u64, ..WorkReport::default() };
         for ray in rays {

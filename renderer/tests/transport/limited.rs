@@ -79,6 +79,20 @@ fn every_bound_gives_a_whole_picture() {
 }
 
 #[test]
+fn rounds_have_more_samples_as_the_bound_grows() {
+    let room = room();
+    let settings = || Settings { threads: Some(1), ..settings(4) };
+    let samples = |seconds: f64| -> u32 {
+        let timed = room.within("TRSMGD", settings(), seconds, &mut nothing_known());
+        timed.record.rounds.iter().map(|round| round.samples).sum()
+    };
+    let samples: Vec<u32> = (0..24).map(|step| samples(0.1 * 1.25_f64.powi(step))).collect();
+    assert!(samples.is_sorted(), "{samples:?}");
+    assert_eq!((samples[0], samples[23]), (0, 4));
+    assert!(samples.iter().any(|&samples| (1..4).contains(&samples)), "{samples:?}");
+}
+
+#[test]
 fn a_record_repeats_its_picture_to_the_bit_with_any_number_of_threads() {
     let room = room();
     let mut records = Vec::new();
@@ -126,8 +140,9 @@ fn close(one: &Film, other: &Film) {
 fn a_round_of_everything_is_the_picture_without_a_limit() {
     let room = room();
     for crex in ["TRSMGD", "T{RSGM}<DG>2"] {
-        let replay = room.with(crex, settings(4), |renderer| renderer.replay(&one_round(4, &[true; 20])).unwrap());
-        let plain = room.render(crex, settings(4));
+        // From eight samples on no pixel shares its neighbours' soft light.
+        let replay = room.with(crex, settings(8), |renderer| renderer.replay(&one_round(8, &[true; 20])).unwrap());
+        let plain = room.render(crex, settings(8));
         close(&replay.rendering.film, &plain.film);
         assert_eq!(replay.rendering.left, plain.left);
     }
@@ -138,24 +153,24 @@ fn what_is_skipped_leaves_nothing_in_the_rounds() {
     // T and D run, [RS] does not: the same rays as those of TD.
     let room = room();
     let ran = [true, false, false, true];
-    let replay = room.with("T[RS]D", settings(4), |renderer| renderer.replay(&one_round(4, &ran)).unwrap());
-    let plain = room.render("TD", settings(4));
+    let replay = room.with("T[RS]D", settings(8), |renderer| renderer.replay(&one_round(8, &ran)).unwrap());
+    let plain = room.render("TD", settings(8));
     close(&replay.rendering.film, &plain.film);
     assert_eq!(replay.rendering.left, plain.left);
 }
 
 #[test]
 fn rounds_and_refinement_count_by_their_samples() {
-    // Nothing is skipped: two samples of rounds and two whole passes of refinement (11 levels of nine tiles, which take the
-    // sample numbers 2 and 3) are the picture of four samples, however they were traced.
+    // Nothing is skipped: four samples of rounds and four whole passes of refinement (19 levels of nine tiles, which take the
+    // sample numbers from 4 to 7) are the picture of eight samples, however they were traced.
     let room = room();
-    let record = TimedRecord { units: 11 * 9, ..one_round(2, &[true; 6]) };
-    let both = room.with("TRSMGD", settings(2), |renderer| renderer.replay(&record).unwrap());
-    assert!((both.refined_samples - 2.0).abs() < 1e-12);
-    close(&both.rendering.film, &room.render("TRSMGD", settings(4)).film);
+    let record = TimedRecord { units: 19 * 9, ..one_round(4, &[true; 6]) };
+    let both = room.with("TRSMGD", settings(4), |renderer| renderer.replay(&record).unwrap());
+    assert!((both.refined_samples - 4.0).abs() < 1e-12);
+    close(&both.rendering.film, &room.render("TRSMGD", settings(8)).film);
     let refined = TimedRecord { rounds: Vec::new(), ..record };
-    let alone = room.with("TRSMGD", settings(2), |renderer| renderer.replay(&refined).unwrap());
-    assert_eq!(alone.rendering.primary.rays, 2 * 40 * 40);
+    let alone = room.with("TRSMGD", settings(4), |renderer| renderer.replay(&refined).unwrap());
+    assert_eq!(alone.rendering.primary.rays, 4 * 40 * 40);
 }
 
 #[test]

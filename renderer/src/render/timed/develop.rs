@@ -15,6 +15,16 @@ use super::RoundRecord;
 use super::refine::Refinement;
 use super::round::{Round, State};
 
+/// Samples of a pixel from which it is shown as it is. Of soft light a few scattered samples with what lies between them filled in
+/// are nearer the truth than one sample of each pixel, which is mostly noise: a pixel with fewer samples than these shares those of
+/// its neighbours, so that the picture does not become worse as they come in.
+fn enough(plane: Plane) -> f32 {
+    match plane {
+        Plane::Layer(Component::Diffuse | Component::Glossy) | Plane::Ambient => 8.0,
+        Plane::Direct | Plane::Layer(_) => 1.0,
+    }
+}
+
 /// What the rounds have brought together.
 pub(super) struct Merger {
     tiles: Vec<Block>,
@@ -154,7 +164,8 @@ impl Merger {
     fn plane(&self, renderer: &Renderer<'_>, refinement: &Refinement, plane: Plane, source: Source) -> Raster<Vec3> {
         let (width, height) = (renderer.settings.width, renderer.settings.height);
         let mut raster = Raster::filled(width, height, Vec3::ZERO);
-        let mut known = vec![false; width * height];
+        let mut known = vec![0.0; width * height];
+        let enough = enough(plane);
         for (place, tile) in self.tiles.iter().enumerate() {
             let samples = match plane {
                 Plane::Direct => self.direct[place],
@@ -172,7 +183,7 @@ impl Merger {
                     if weight > 0 {
                         let at = (tile.y + pixel / tile.width) * width + tile.x + pixel % tile.width;
                         raster.values_mut()[at] = (sum / f64::from(weight)).as_vec3();
-                        known[at] = true;
+                        known[at] = (weight as f32 / enough).min(1.0);
                     }
                 }
             });

@@ -118,10 +118,9 @@ mod tests {
     #[test]
     fn blocks_hold_every_tile_once() {
         let (width, height) = (200, 90);
-        let tiles: Vec<Block> =
-            (0..tile_count(width, height)).map(|index| tile(width, height, index)).collect();
+        let tiles: Vec<Block> = (0..tile_count(width, height)).map(|index| tile(width, height, index)).collect();
         let blocks = scrambled_blocks(&tiles);
-        assert_eq!(blocks.len(), 4 * 2);
+        assert_eq!(blocks.len(), 7 * 3);
         let mut seen: Vec<usize> = blocks.iter().flat_map(|(_, places)| places.clone()).collect();
         seen.sort_unstable();
         assert!(seen.into_iter().eq(0..tiles.len()));

@@ -26,6 +26,9 @@ use round::Round;
 /// The part of the time that the sprinkle may take.
 const SPRINKLE_TIME: f64 = 0.1;
 
+/// The part of a sample of everything that must fit, if samples are to run stage by stage with some of their tasks skipped.
+const MOST: f64 = 0.5;
+
 /// Bytes that the waiting rays of a round may take, about.
 const ROUND_BYTES: f64 = 2e9;
 
@@ -106,25 +109,25 @@ impl Renderer<'_> {
         let sprinkle = || (sprinkle_ends_s - budget.now_s()).min(budget.left_s());
         refinement.run(self, &complete, SPRINKLED * tiles, (&sprinkle, &left_s), &mut costs)?;
         // What comes at the end will be as slow as what came first.
-        let slower = slower(&refinement, &known, costs.profile_mut());
-        let end = end.slowed(slower);
-        let kept = |chore| end.with_more_reserve(slower * self.chore_s(chore, &known));
+        let mut slower = slower(&refinement, &known, costs.profile_mut());
+        let kept = |chore, slower| end.slowed(slower).with_more_reserve(slower * self.chore_s(chore, &known));
         let mut merger = Merger::new(self);
         let mut first = 0;
         let all = self.settings.samples;
-        let at_once = self.samples_at_once();
         while first < all {
-            let samples = at_once.min(all - first);
-            let part = f64::from(samples) / f64::from(all - first);
-            let whole = kept(FILL).with_more_reserve(slower * self.chore_s(GATHER, &known));
-            let share = whole.with_more_reserve((1.0 - part) * whole.left_s().max(0.0));
-            let Some(round) = Round::run(self, &tracer, first, samples, (share, whole), &mut costs)? else { break };
+            let whole = kept(FILL, slower).with_more_reserve(slower * self.chore_s(GATHER, &known));
+            let fitting = fitting(all - first, whole.left_s(), self.sample_s(&refinement, &costs));
+            let Some(round) = self.round(&tracer, (first, fitting), whole, &mut costs)? else { break };
+            first += round.record.samples;
             let ended_s = round.ended_s;
             merger.add(round);
-            costs.profile_mut().observe_writer(GATHER, self.plane_bytes(), budget.now_s() - ended_s);
-            first += samples;
+            let gathered_s = budget.now_s() - ended_s;
+            if known.predict_writer(GATHER, self.plane_bytes()).is_none() {
+                slower = slower.max(slower_than_guessed(gathered_s, self.plane_bytes()));
+            }
+            costs.profile_mut().observe_writer(GATHER, self.plane_bytes(), gathered_s);
         }
-        let budget = kept(if merger.is_complete() { DEVELOP } else { FILL });
+        let budget = kept(if merger.is_complete() { DEVELOP } else { FILL }, slower);
         let left_s = || budget.left_s();
         refinement.run(self, &complete, u64::MAX, (&left_s, &left_s), &mut costs)?;
         let ended_s = budget.now_s();
@@ -132,6 +135,40 @@ impl Renderer<'_> {
         let developed = self.developed(merger, refinement);
         costs.profile_mut().observe_writer(chore, self.plane_bytes(), budget.now_s() - ended_s);
         Ok(developed)
+    }
+
+    /// The next round, of as many samples at most as are said to fit, and of fewer if not even their primary rays do; none if
+    /// those of a single sample do not.
+    fn round(
+        &self,
+        tracer: &Tracer<'_>,
+        (first, fitting): (u32, u32),
+        whole: Budget<'_>,
+        costs: &mut PictureCosts<'_>,
+    ) -> Result<Option<Round>, ThresholdError> {
+        let at_once = self.samples_at_once();
+        for fitting in (1..=fitting).rev() {
+            let samples = at_once.min(fitting);
+            if self.indivisible() && samples < self.settings.samples {
+                break;
+            }
+            let part = f64::from(samples) / f64::from(fitting);
+            let share = whole.with_more_reserve((1.0 - part) * whole.left_s().max(0.0));
+            let round = Round::run(self, tracer, first, samples, (share, whole), costs)?;
+            if round.is_some() {
+                return Ok(round);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Seconds that a sample of the whole crex is predicted to take in every pixel, by what the sprinkle has met.
+    fn sample_s(&self, sprinkle: &Refinement, costs: &PictureCosts<'_>) -> Option<f64> {
+        let pixels = (self.settings.width * self.settings.height) as f64;
+        let seconds = sprinkle
+            .rays_per_primary()
+            .map(|(place, rays)| costs.predict(place, (pixels * rays).ceil() as u64).map(|predicted| predicted.mean_s));
+        seconds.sum::<Option<f64>>().filter(|seconds| *seconds > 0.0)
     }
 
     fn again(&self, record: &TimedRecord) -> Result<TimedRendering, ThresholdError> {
@@ -178,6 +215,11 @@ impl Renderer<'_> {
         Tracer { modulation, ..tracer }
     }
 
+    /// Whether a round must have all samples: which of them stand for which others is decided over all.
+    fn indivisible(&self) -> bool {
+        matches!(self.rule, Rule::Continuous { .. })
+    }
+
     /// Samples of a pixel whose rays may wait at once.
     fn samples_at_once(&self) -> u32 {
         if let Rule::Continuous { samples } = self.rule {
@@ -212,6 +254,13 @@ impl Renderer<'_> {
     }
 }
 
+/// How many of so many samples rounds are to have, given the seconds left and those that a sample of everything would take, if they
+/// are known: so many that [`MOST`] of each fits. Where not even one would, the refinement shows more.
+fn fitting(wanted: u32, left_s: f64, sample_s: Option<f64>) -> u32 {
+    let fitting = sample_s.map_or(f64::INFINITY, |sample_s| left_s / (MOST * sample_s));
+    if fitting < f64::from(wanted) { fitting.max(0.0) as u32 } else { wanted }
+}
+
 /// What paths are like, for the profile: the crex that they run and the limits that end them.
 #[must_use]
 pub fn paths(program: &Program, limits: &Limits) -> String {
@@ -229,7 +278,7 @@ const DEVELOP: &str = "develop";
 const FILL: &str = "fill";
 
 /// Seconds that these take for each byte of the planes before they were measured, generously (a 2 GHz core).
-const CHORE_S: f64 = 0.7e-9;
+const CHORE_S: f64 = 1.2e-9;
 
 /// The seconds of a sprinkle, by its name in the profile, for each nanosecond that its rays were expected to take: more than
 /// rays of rounds, which run in larger sets.
@@ -243,6 +292,12 @@ const LEAST_SLOWED: f64 = 1.15;
 /// A sprinkle shorter than this tells nothing of the machine.
 const LEAST_SPRINKLE_S: f64 = 2e-3;
 
+/// How many times slower than guessed the machine is, by the first chore that is measured on it: then so may be those that come at
+/// the end, of which nothing but guesses is known.
+fn slower_than_guessed(gathered_s: f64, bytes: u64) -> f64 {
+    (gathered_s / (CHORE_S * bytes as f64)).clamp(1.0, MOST_SLOWED)
+}
+
 /// How many times slower the machine is than it used to be, by the sprinkle: what other programs do to it now. At least 1, and
 /// 1 while nothing is known.
 fn slower(sprinkle: &Refinement, known: &ProfileCache, profile: &mut ProfileCache) -> f64 {
@@ -253,4 +308,25 @@ fn slower(sprinkle: &Refinement, known: &ProfileCache, profile: &mut ProfileCach
     let usual = known.predict_writer(SPRINKLE, expected_ns);
     let slower = usual.filter(|usual| usual.mean_s > 0.0).map_or(1.0, |usual| taken_s / usual.mean_s);
     if slower > LEAST_SLOWED { slower.min(MOST_SLOWED) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_have_as_many_samples_as_most_of_each_fits() {
+        let fitting = |left_s| fitting(4, left_s, Some(2.0));
+        assert_eq!([-1.0, 0.0, 0.9, 1.1, 2.1, 3.9, 4.1, 100.0].map(fitting), [0, 0, 0, 1, 2, 3, 4, 4]);
+        assert_eq!(super::fitting(4, 1.0, None), 4);
+    }
+
+    #[test]
+    fn what_is_only_guessed_is_kept_for_as_long_as_the_machine_is_slow() {
+        let bytes = 1 << 20;
+        let guessed_s = CHORE_S * bytes as f64;
+        for (times, slower) in [(0.3, 1.0), (1.0, 1.0), (2.5, 2.5), (100.0, MOST_SLOWED)] {
+            assert!((slower_than_guessed(times * guessed_s, bytes) - slower).abs() < 1e-12);
+        }
+    }
 }

@@ -97,6 +97,15 @@ impl Refinement {
         Level::passes(self.levels())
     }
 
+    /// Rays of every place for each primary ray, primary rays included, as far as it has come.
+    pub(super) fn rays_per_primary(&self) -> impl Iterator<Item = (Place, f64)> {
+        let Outcome { primary, rows, .. } = &self.outcome;
+        let all = std::iter::once((Place::PRIMARY, primary.rays))
+            .chain(rows.iter().map(|row| (Place::of(&row.stage), row.report.rays)));
+        let primary = primary.rays as f64;
+        all.filter(|(_, rays)| *rays > 0).map(move |(place, rays)| (place, rays as f64 / primary))
+    }
+
     /// Seconds that its rays took, and those that a profile says they take; none if it does not know them all.
     pub(super) fn pace(&self, known: &ProfileCache) -> Option<(f64, f64)> {
         let Outcome { primary, rows, .. } = &self.outcome;
@@ -141,7 +150,8 @@ impl Refinement {
             return (first..end).map(|unit| unit..unit + 1).collect();
         }
         let before = index * self.tiles.len() as u64;
-        let chunks = self.blocks.iter().map(|(_, units)| (before + units.start).max(first)..(before + units.end).min(end));
+        let chunks =
+            self.blocks.iter().map(|(_, units)| (before + units.start).max(first)..(before + units.end).min(end));
         chunks.filter(|chunk| !chunk.is_empty()).collect()
     }
 
@@ -308,5 +318,5 @@ impl Learnt {
 }
 
 /// A stage of a chunk that took longer than so many seconds and so many times what it should was interrupted.
-const INTERRUPTED_S: f64 = 1e-3;
+const INTERRUPTED_S: f64 = 5e-5;
 const INTERRUPTED: f64 = 8.0;
