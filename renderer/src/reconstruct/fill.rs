@@ -141,7 +141,7 @@ mod tests {
         // Every fourth pixel of a ramp of slope 1 a pixel is known; away from the border the fill cannot be off by more than
         // the distance to what is known.
         let ramp: Vec<Vec3> = (0..64 * 64).map(|i| Vec3::splat((i % 64) as f32)).collect();
-        let lattice = |i: usize| (i % 64) % 4 == 0 && (i / 64) % 4 == 0;
+        let lattice = |i: usize| (i % 64).is_multiple_of(4) && (i / 64).is_multiple_of(4);
         let known: Vec<f32> = (0..64 * 64).map(|i| f32::from(u8::from(lattice(i)))).collect();
         let mut plane = Raster::from_values(64, 64, ramp.clone()).expect("its size");
         fill(&mut plane, &known);
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn what_is_half_known_is_a_mean_with_its_neighbours() {
         // Noise of deviation 1 about 5, an eighth of each pixel known: sixteen of them make two whole ones.
-        let noise = |i: usize| if (i.wrapping_mul(0x9e37_79b9) >> 7) % 2 == 0 { 6.0 } else { 4.0 };
+        let noise = |i: usize| if (i.wrapping_mul(0x9e37_79b9) >> 7).is_multiple_of(2) { 6.0 } else { 4.0 };
         let values = (0..64 * 64).map(|i| Vec3::splat(noise(i))).collect();
         let mut plane = Raster::from_values(64, 64, values).expect("its size");
         fill(&mut plane, &[0.125; 64 * 64]);

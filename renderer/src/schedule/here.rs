@@ -3,18 +3,18 @@
 
 use std::collections::BTreeMap;
 
-use super::cost::Cost;
+use super::cost::{Cost, RayKind};
 use super::place::Place;
 use super::profile::{JITTER_S, PRIOR_OBSERVATIONS, PRIOR_SPREAD, Prediction, ProfileCache};
 
 /// How far a cost in the sprinkle is from that in a round, as part of it, before both have been seen.
-const PRIOR_PACE: f64 = 0.08;
+const PRIOR_PACE: f64 = 0.12;
 
 /// Deviation of a single ray's cost, as part of the mean: at least this much is not known from few rays.
 const RAY_SPREAD: f64 = 0.6;
 
 /// What no number of observations takes away from the deviation of a prediction, as part of its mean.
-const LEAST_SPREAD: f64 = 0.03;
+const LEAST_SPREAD: f64 = 0.04;
 
 /// Deviation of a round's cost from that of an earlier round of the same picture, as part of it.
 const ROUND_SPREAD: f64 = 0.05;
@@ -31,16 +31,22 @@ pub struct PictureCosts<'p> {
     paths: String,
     sprinkled: BTreeMap<Place, Cost>,
     rounds: BTreeMap<Place, Cost>,
-    /// How the rounds of this picture compared with its sprinkle, over all components: the sum of logarithms by their weights, and
-    /// the weights.
-    pace: (f64, f64),
+    /// How the rounds of this picture compared with its sprinkle, by kind of ray: the sum of logarithms by their weights, and the
+    /// weights.
+    pace: [(f64, f64); RayKind::ALL.len()],
 }
 
 impl<'p> PictureCosts<'p> {
     /// For a picture of which no ray was traced. `paths` says which crex it runs and under which limits.
     #[must_use]
     pub fn new(profile: &'p mut ProfileCache, paths: impl Into<String>) -> Self {
-        Self { profile, paths: paths.into(), sprinkled: BTreeMap::new(), rounds: BTreeMap::new(), pace: (0.0, 0.0) }
+        Self {
+            profile,
+            paths: paths.into(),
+            sprinkled: BTreeMap::new(),
+            rounds: BTreeMap::new(),
+            pace: Default::default(),
+        }
     }
 
     /// What is kept for other pictures.
@@ -75,9 +81,10 @@ impl<'p> PictureCosts<'p> {
             let expected_ns = (1e9 * sprinkled.mean_s() * rays as f64).round() as u64;
             self.profile.observe_pace(&self.paths, place, expected_ns, seconds);
             let ratio = seconds / (sprinkled.mean_s() * rays as f64);
-            if place != Place::PRIMARY && ratio.is_normal() {
+            if ratio.is_normal() {
                 let weight = (PRIOR_PACE * PRIOR_PACE + sampling(sprinkled) + sampling_of(rays)).recip();
-                self.pace = (self.pace.0 + weight * ratio.ln(), self.pace.1 + weight);
+                let (sum, weights) = &mut self.pace[place.kind().index()];
+                (*sum, *weights) = (*sum + weight * ratio.ln(), *weights + weight);
             }
         }
         self.rounds.entry(place).or_default().observe(rays, seconds);
@@ -100,10 +107,8 @@ impl<'p> PictureCosts<'p> {
         });
         let of_sprinkle = self.sprinkled.get(&place).map(|cost| {
             let pace = known.map(|known| known.pace).filter(|pace| pace.rays() > 0);
-            let here = (self.pace.0 / (self.pace.1 + (PRIOR_PACE * PRIOR_PACE).recip())).exp();
-            let here = if place == Place::PRIMARY { 1.0 } else { here };
-            let (times, spread) =
-                pace.map_or((here, PRIOR_PACE), |pace| (1e9 * pace.mean_s(), shrunk(&pace, PRIOR_PACE)));
+            let unknown = || (self.pace_of(place.kind()), PRIOR_PACE);
+            let (times, spread) = pace.map_or_else(unknown, |pace| (1e9 * pace.mean_s(), shrunk(&pace, PRIOR_PACE)));
             (cost.mean_s() * times, spread * spread + sampling(cost))
         });
         let of_rounds = self
@@ -125,6 +130,17 @@ impl<'p> PictureCosts<'p> {
             }
             None => self.profile.predict(place.kind(), rays),
         }
+    }
+
+    /// How rounds compare with the sprinkle where no other picture has told: as those of this picture did, of the same kind first and
+    /// then of the others. Primary rays, which are spawned where they run, are another matter.
+    fn pace_of(&self, kind: RayKind) -> f64 {
+        let prior = (PRIOR_PACE * PRIOR_PACE).recip();
+        let spawned = &self.pace[RayKind::Primary.index() + 1..];
+        let (sum, weights) = spawned.iter().fold((0.0, prior), |all, one| (all.0 + one.0, all.1 + one.1));
+        let all = if kind == RayKind::Primary { 0.0 } else { sum / weights };
+        let (sum, weights) = self.pace[kind.index()];
+        ((sum + prior * all) / (weights + prior)).exp()
     }
 
     /// As [`ProfileCache::bound_s`].
@@ -183,7 +199,6 @@ fn weighed(evidence: impl Iterator<Item = (f64, f64)> + Clone) -> Option<(f64, f
 mod tests {
     use super::*;
     use crate::component::Component;
-    use crate::schedule::RayKind;
 
     const FIRST: fn() -> Place = || Place::new(Component::Transmitted, 0, 1);
     const SECOND: fn() -> Place = || Place::new(Component::Transmitted, 1, 1);
@@ -229,7 +244,7 @@ mod tests {
         near(costs.predict(FIRST(), 1_000_000), 2.0, 1e-9);
         let uncertain = costs.predict(FIRST(), 1_000_000).expect("known");
         costs.sprinkled(FIRST(), &cost(100, 100, 2.9e-4));
-        near(costs.predict(FIRST(), 1_000_000), 2.9, 0.02);
+        near(costs.predict(FIRST(), 1_000_000), 2.9, 0.05);
         let certain = costs.predict(FIRST(), 1_000_000).expect("known");
         assert!(certain.deviation_s < 0.3 * uncertain.deviation_s);
         // An earlier round of the same picture says most.
