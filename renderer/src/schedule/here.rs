@@ -246,7 +246,7 @@ mod tests {
         costs.sprinkled(FIRST(), &cost(100, 100, 2.9e-4));
         near(costs.predict(FIRST(), 1_000_000), 2.9, 0.05);
         let certain = costs.predict(FIRST(), 1_000_000).expect("known");
-        assert!(certain.deviation_s < 0.3 * uncertain.deviation_s);
+        assert!(certain.deviation_s < 0.5 * uncertain.deviation_s);
         // An earlier round of the same picture says most.
         costs.ran(FIRST(), 100_000, 0.26);
         near(costs.predict(FIRST(), 1_000_000), 2.6, 0.05);
