@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Whether quality falls anywhere as the bound grows: pictures under bounds from 0.3 s to 20 s against a long reference.
 
-    python3 renderer/benches/quality.py --crex target/release/crex --out quality [--width 320] [--spp 256]
+    python3 renderer/benches/quality.py --crex target/release/crex --out quality [--width 320] [--spp 256] [--samples 4]
 
 For each scene and bound: JOD of ColorVideoVDP on the display of the 2005 experiment, filled by the picture, and the mean squared
 relative error (`crex compare`), each the mean over --seeds pictures. A fall is a JOD lower by more than 0.05 than the best at a
@@ -68,6 +68,7 @@ def main():
     parser.add_argument("--out", default="quality")
     parser.add_argument("--width", type=int, default=320)
     parser.add_argument("--spp", type=int, default=256, help="samples of the reference")
+    parser.add_argument("--samples", type=int, default=4, help="samples asked for under a bound: what the rounds have at most")
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--bounds", type=float, nargs="+", default=BOUNDS)
     parser.add_argument("--scenes", nargs="+", default=list(SCENES), choices=list(SCENES))
@@ -89,7 +90,7 @@ def main():
         for bound in args.bounds:
             found = []
             for seed in range(args.seeds):
-                more = ["--time", str(bound), "--seed", str(seed)]
+                more = ["--time", str(bound), "--spp", str(args.samples), "--seed", str(seed)]
                 if args.costs:
                     more += ["--profile", os.path.join(args.out, f"{scene}.json")]
                 made = picture(args, scene, f"{bound}_{seed}", more)

@@ -75,6 +75,10 @@ impl<'p> PictureCosts<'p> {
 
     /// Takes in what a round's rays of a place took together: `rays` at once, of the whole picture.
     pub fn ran(&mut self, place: Place, rays: u64, seconds: f64) {
+        // A `*` ends with a run that traces nothing, which is no news of what rays cost.
+        if rays == 0 || !seconds.is_finite() || seconds < 0.0 {
+            return;
+        }
         self.profile.observe(place.kind(), rays, seconds);
         self.profile.observe_place(&self.paths, place, rays, seconds);
         if let Some(sprinkled) = self.sprinkled.get(&place) {

@@ -72,6 +72,22 @@ fn what_is_stored_is_read_back() {
 }
 
 #[test]
+fn runs_without_rays_leave_no_trace() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("profile.json");
+    let mut profile = ProfileCache::new("scene", "machine");
+    learn(&mut profile, 1000);
+    let mut costs = PictureCosts::new(&mut profile, "T");
+    let third = Place::new(Component::Transmitted, 0, 3);
+    for (rays, seconds) in [(0, 1e-6), (5, -1.0), (5, f64::NAN), (5, f64::INFINITY)] {
+        costs.ran(third, rays, seconds);
+    }
+    profile.save(&path).expect("stored");
+    let again = ProfileCache::load(&path, "scene", "machine").expect("what was stored is a profile");
+    assert!(again.place("T", third).is_none() && again.place("T", second()).is_some());
+}
+
+#[test]
 fn another_scene_or_machine_is_refused_and_left_alone() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("profile.json");
