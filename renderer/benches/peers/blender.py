@@ -1,6 +1,6 @@
 """Renders a scene of `equal_error.py` with Blender's Cycles, on one thread: called by that script.
 
-    PYTHON blender.py SCENE.rad SCENE.vf SIZE OUT.exr SAMPLES [denoised]
+    PYTHON blender.py SCENE.rad SCENE.vf WIDTHxHEIGHT OUT.exr SAMPLES [denoised]
 
 where PYTHON is one with bpy (`pip install bpy==4.5.15`, Python 3.11). Prints the CPU seconds of rendering alone, after a first render of
 one sample that loads what there is to load. Denoised is by Intel's Open Image Denoise with albedo and normal, as Blender ships it.
@@ -41,11 +41,14 @@ def build(scene_path, view_path, size):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     materials, polygons = polygons_of(scene_path)
-    made = {name: material(name, *it) for name, it in materials.items()}
-    for name, modifier, corners in polygons:
+    for name, it in materials.items():
+        made = [corners for _, modifier, corners in polygons if modifier == name]
         mesh = bpy.data.meshes.new(name)
-        mesh.from_pydata(corners, [], [list(range(len(corners)))])
-        mesh.materials.append(made[modifier])
+        ends = [0]
+        for corners in made:
+            ends.append(ends[-1] + len(corners))
+        mesh.from_pydata([corner for corners in made for corner in corners], [], [list(range(*it)) for it in zip(ends, ends[1:])])
+        mesh.materials.append(material(name, *it))
         scene.collection.objects.link(bpy.data.objects.new(name, mesh))
     number = lambda flag, n: view_numbers(view_path, flag, n)
     back, up = -Vector(number("-vd", 3)).normalized(), Vector(number("-vu", 3))
@@ -58,7 +61,7 @@ def build(scene_path, view_path, size):
     scene.collection.objects.link(seen)
     scene.camera = seen
     scene.render.engine = "CYCLES"
-    scene.render.resolution_x = scene.render.resolution_y = size
+    scene.render.resolution_x, scene.render.resolution_y = map(int, size.split("x"))
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
     scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
     cycles = scene.cycles
@@ -71,7 +74,7 @@ def build(scene_path, view_path, size):
 
 def main():
     scene_path, view_path, size, out, samples = sys.argv[1:6]
-    scene = build(scene_path, view_path, int(size))
+    scene = build(scene_path, view_path, size)
     scene.render.filepath = out
     scene.cycles.use_denoising = "denoised" in sys.argv[6:]
     scene.cycles.denoiser = "OPENIMAGEDENOISE"

@@ -1,207 +1,192 @@
-"""CPU seconds to a given error of crex and of other renderers on one scene, in one run.
+"""CPU seconds to a given error of crex and of other renderers on six scenes, and on what of them all can read.
 
-    pip install pyradiance mitsuba numpy OpenEXR      (in a virtual environment outside the project)
-    python renderer/benches/peers/equal_error.py CREX SCENE.rad SCENE.vf REFERENCE.exr [crex,rpict,mitsuba,cycles]
+    pip install pyradiance mitsuba numpy OpenEXR mapbox_earcut      (in a virtual environment outside the project)
+    KEEP=folder python renderer/benches/peers/equal_error.py CREX ["SCENE/SCENE.." or all [crex,rpict,mitsuba,cycles]]
 
-For Cycles, CYCLES_PYTHON names a Python that has bpy (see `blender.py`).
+SCENES names a folder with Radiance's object library (office, cabin, lib; `.pic` names of pictures that are there as `.hdr`), CORNELL one with
+cornell_d.rad and cornell.vf, CYCLES_PYTHON a Python that has bpy (see `blender.py`); what is not named is said to be skipped. What was measured is
+kept in KEEP, so that a run that was stopped goes on, and crex's own points go with the program that made them.
 
-The scene must hold polygons of plastic without gloss and `light`s, so that all solve the same problem: direct light and
-5 diffuse bounces, box filter. Error: sqrt(mean((x - r)^2 / (r^2 + .01 mean(r)^2))) on luminance. CPU seconds are user and
-system time of the process on one thread; crex and rpict with all start-up, Mitsuba's and Cycles' rendering alone. Each setting is run once; times
-to 5, 2 and 1 % are read between points by error ~ time^slope, and beyond the last by time^-1/2 (marked ~). What lies on a floor of
-bias above the error is marked `never`.
+Everybody solves the same: direct light, at most 5 diffuse bounces, mirrors, panes and gloss without limit but Russian roulette.
+Error: sqrt(mean((x - r)^2 / (r^2 + .01 mean(r)^2))) on luminance, with two independent references by crex, so that their own noise cancels.
+Seconds are CPU seconds of one thread without start-up: of crex and rpict, those of a picture of one pixel are taken off; of Mitsuba and
+Cycles, rendering alone is counted.
+
+rpict without its cache is read from the difference of two pictures, so a difference from crex is not called an error of it. With its cache,
+a first run fills the cache; two more with that cache tell by their difference the noise that more rays lessen, and by the references what stays.
 """
 
+import datetime
+import hashlib
+import json
+import math
 import os
 import re
-import resource
-import subprocess
 import sys
-import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 
-from polygons import read as polygons_of, view_numbers
+import programs
+from pictures import BRIGHT, squared_error, squared_noise
+from scenes import scenes
+from times import GOALS, Table, summary
 
-BRIGHT = np.array([0.265074126, 0.670114631, 0.064811243])
-SIZE = 256
-
-
-def exr(path):
-    channels = OpenEXR.File(str(path)).parts[0].channels
-    whole = channels.get("RGB") or channels.get("RGBA")
-    rgb = whole.pixels[..., :3] if whole else np.stack([channels[c].pixels for c in "RGB"], -1)
-    return np.asarray(rgb, float)
-
-
-def rgbe(data):
-    """Radiance's picture format, run-length encoded, row 0 at the top."""
-    end = data.index(b"\n\n") + 2
-    line = data.index(b"\n", end)
-    height, width = map(int, re.match(rb"-Y +(\d+) +\+X +(\d+)", data[end:line]).groups())
-    at, rows = line + 1, np.empty((height, width, 4), np.uint8)
-    for row in rows:
-        at += 4
-        for channel in range(4):
-            x = 0
-            while x < width:
-                code = data[at]
-                if code > 128:
-                    row[x : x + code - 128, channel] = data[at + 1]
-                    x, at = x + code - 128, at + 2
-                else:
-                    row[x : x + code, channel] = np.frombuffer(data, np.uint8, code, at + 1)
-                    x, at = x + code, at + 1 + code
-    mantissa, exponent = rows[..., :3].astype(float), rows[..., 3:].astype(float)
-    return np.where(exponent > 0, (mantissa + 0.5) * np.exp2(exponent - 136), 0.0)
+REFERENCE, REFERENCE_OF = 256, {"library": 384, "library, matt": 384}
+# Rays along a pixel's side (thrice as many where few bright paths rule the noise); settings.
+UNCACHED = ((2, "-ad 1 -lr -12 -lw .2 -ds 0"), (2, "-ad 4 -lr -12 -lw .05 -ds 0"))
+UNCACHED_MATT = ((1, "-ad 8 -lr 12 -lw 1e-5 -ds .15"),)
+CACHED = ("-aa .2 -ar 64 -ad 256 -as 64", "-aa .1 -ar 256 -ad 1024 -as 256")
+LIMIT = 90  # seconds of filling a cache
 
 
-def error(picture, reference):
-    x, r = picture @ BRIGHT, reference @ BRIGHT
-    return float(np.sqrt(np.mean((x - r) ** 2 / (r**2 + 0.01 * r.mean() ** 2))))
+class Kept:
+    """What was measured, by its name, in a file."""
+
+    def __init__(self, path):
+        self.path = path
+        self.all = json.loads(path.read_text()) if path.exists() else {}
+
+    def get(self, name, measure):
+        if name not in self.all:
+            self.all[name] = measure()
+            self.path.write_text(json.dumps(self.all, indent=1))
+        return self.all[name]
 
 
-def run(words, **more):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    out = subprocess.run(words, check=True, capture_output=True, **more).stdout
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return out, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+def luminance(picture):
+    return float((picture @ BRIGHT).mean())
 
 
-def crex(program, scene, view, samples, *more):
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder, "a.exr")
-        size = ["-x", str(SIZE), "-y", str(SIZE)]
-        words = [program, "render", scene, "-vf", view, *size, "--crex", "D5", "--spp", str(samples), "-n", "1", "-o", out]
-        _, seconds = run([*map(str, words), *more])
-        return exr(out), seconds
+def build_of(program):
+    return hashlib.sha256(program.read_bytes()).hexdigest()[:12]
 
 
-def rpict(scene, view, over, *more):
-    import pyradiance
+def measure(scene, program, who, keep):
+    stem = scene.name.replace(", ", "_")
+    kept = Kept(keep / f"{stem}.json")
+    build = build_of(program)
+    samples = REFERENCE_OF.get(scene.name, REFERENCE)
+    paths = [keep / f"{stem}_{i}.npy" for i in (1, 2)]
+    for seed, path in enumerate(paths, 1001):
+        if not path.exists():
+            picture, kept.all[f"crex {build} reference {seed}"] = programs.crex(program, scene, samples, seed)
+            np.save(path, picture)
+    references = [np.load(path) for path in paths]
+    middle = (references[0] + references[1]) / 2
+    bright, noise = luminance(middle), squared_noise(*references, middle)
+    print(f"\n### {scene.name}, {scene.width} x {scene.height}\n")
+    print(f"References of {samples} samples, noise of each {100 * math.sqrt(noise):.2f} %.\n")
+    print("| renderer | setting | CPU s | error, % | mean / reference |\n|---|---|---|---|---|")
+    table = Table()
+    judged = lambda picture: (math.sqrt(max(squared_error(picture, references), 1e-12)), luminance(picture) / bright)
+    if "crex" in who:
+        start = kept.get(f"crex {build} start", lambda: programs.crex(program, scene, 1, 1, size=(1, 1))[1])
 
-    tools = Path(pyradiance.__file__).parent / "bin"
-    env = {**os.environ, "RAYPATH": f".:{Path(pyradiance.__file__).parent / 'lib'}"}
-    octree, _ = run([tools / "oconv", scene], env=env)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "a.oct")
-        path.write_bytes(octree)
-        size = ["-x", str(SIZE * over), "-y", str(SIZE * over)]
-        fixed = "-u+ -ps 1 -pt 0 -pj 1 -dj 1 -ds .15 -dt 0 -dc 1 -lr 12 -lw 1e-5 -ab 5".split()
-        picture, seconds = run([tools / "rpict", "-vf", view, *size, *fixed, *more, path], env=env)
-    picture = rgbe(picture).reshape(SIZE, over, SIZE, over, 3).mean((1, 3))
-    return picture, seconds
+        def point(samples, *more):
+            picture, seconds = programs.crex(program, scene, samples, samples, *more)
+            return [seconds - start, *judged(picture)]
 
+        for count in (16, 64):
+            table.add("crex", f"{count} spp", *kept.get(f"crex {build} {count}", lambda: point(count)))
+        times = [kept.all.get(f"crex {build} reference {seed}") for seed in (1001, 1002)]
+        if all(times):
+            table.add("crex", f"{samples} spp, the references", sum(times) / 2 - start, math.sqrt(noise), 1.0)
+        table.read("crex")
+        smooth = f"crex --filter {scene.filters}"
+        for count in (4, 16, 64, 256):
+            row = kept.get(f"crex {build} filter {count}", lambda: point(count, "--filter", scene.filters))
+            table.add(smooth, f"{count} spp", *row)
+            if row[1] < GOALS[-1]:
+                break
+        table.read(smooth, is_unbiased=False)
+    if "rpict" in who and not scene.name.endswith("matt"):
+        by_rpict(scene, kept, table, keep, references, middle, bright)
+    if scene.is_matt and "mitsuba" in who:
+        counts = (16, 64, 256)
+        rows = lambda: [(s, seconds, *judged(picture)) for _, s, picture, seconds in programs.mitsuba_points(scene, counts)]
+        for count, *row in kept.get("mitsuba", rows):
+            table.add("Mitsuba", f"{count} spp", *row)
+        table.read("Mitsuba")
+    if scene.is_matt and "cycles" in who:
 
-def mitsuba_scene(scene, view, variant):
-    import mitsuba
+        def by_cycles(count, *more):
+            picture, seconds = programs.cycles(scene, count, *more)
+            return [seconds, *judged(picture)]
 
-    mitsuba.set_variant(variant)
-    materials, polygons = polygons_of(scene)
-    shapes = {}
-    for name, modifier, corners in polygons:
-        corners = np.array(corners)
-        mesh = mitsuba.Mesh(name, len(corners), len(corners) - 2)
-        parameters = mitsuba.traverse(mesh)
-        parameters["vertex_positions"] = corners.astype(np.float32).ravel()
-        parameters["faces"] = np.array([[0, i, i + 1] for i in range(1, len(corners) - 1)], np.uint32).ravel()
-        parameters.update()
-        path = Path(tempfile.gettempdir(), f"equal_error_{os.getpid()}_{name}.ply")
-        mesh.write_ply(str(path))
-        kind, color = materials[modifier]
-        shapes[name] = {"type": "ply", "filename": str(path), "face_normals": True}
-        spectrum = {"type": "rgb", "value": color}
-        if kind == "light":
-            shapes[name]["emitter"] = {"type": "area", "radiance": spectrum}
-            shapes[name]["bsdf"] = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.0}}
-        else:
-            shapes[name]["bsdf"] = {"type": "diffuse", "reflectance": spectrum}
-    number = lambda flag, n: view_numbers(view, flag, n)
-    origin, way = np.array(number("-vp", 3)), np.array(number("-vd", 3))
-    to_world = mitsuba.ScalarTransform4f().look_at(list(origin), list(origin + way), number("-vu", 3))
-    film = {"type": "hdrfilm", "width": SIZE, "height": SIZE, "rfilter": {"type": "box"}, "component_format": "float32"}
-    camera = {"type": "perspective", "fov": number("-vh", 1)[0], "fov_axis": "x", "to_world": to_world, "film": film}
-    integrator = {"type": "path", "max_depth": 7, "rr_depth": 100}
-    loaded = mitsuba.load_dict({"type": "scene", "integrator": integrator, "camera": camera, **shapes})
-    return mitsuba, loaded
-
-
-def mitsuba_points(scene, view, counts):
-    for variant in ("llvm_ad_rgb", "scalar_rgb"):
-        try:
-            mitsuba, loaded = mitsuba_scene(scene, view, variant)
-            sampler = {"type": "multijitter"}
-            for samples in [counts[0], *counts]:
-                sampler["sample_count"] = samples
-                loaded.sensors()[0].sampler().set_sample_count(samples)
-                start = time.process_time()
-                picture = np.array(mitsuba.render(loaded, spp=samples, seed=samples))
-                yield variant, samples, picture, time.process_time() - start
-            return
-        except Exception as problem:  # a variant that this machine cannot run
-            print(f"mitsuba {variant}: {str(problem).splitlines()[0]}", file=sys.stderr)
+        for count in (16, 64, 256):
+            table.add("Cycles", f"{count} spp", *kept.get(f"cycles {count}", lambda: by_cycles(count)))
+        table.read("Cycles")
+        for count in (4, 16, 64, 256):
+            row = kept.get(f"cycles denoised {count}", lambda: by_cycles(count, "denoised"))
+            table.add("Cycles, denoised", f"{count} spp", *row)
+        table.read("Cycles, denoised", is_unbiased=False)
+    return table.times
 
 
-def cycles(scene, view, samples, *more):
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder, "a.exr")
-        python = os.environ.get("CYCLES_PYTHON", sys.executable)
-        words = [python, Path(__file__).with_name("blender.py"), scene, view, SIZE, out, samples, *more]
-        told, _ = run([*map(str, words)])
-        return exr(out), float(re.search(rb"CPU seconds: (\S+)", told)[1])
+def by_rpict(scene, kept, table, keep, references, middle, bright):
+    stem = scene.name.replace(", ", "_")
+    octree, cache = keep / f"{stem}.oct", keep / f"{stem}.amb"
+    if not octree.exists():
+        programs.octree(scene, octree)
+    start = kept.get("rpict start", lambda: programs.rpict(scene, octree, 1, "-aa", 0, size=(1, 1))[1])
 
+    def pair(over, *options):
+        (one, t1), (other, t2) = (programs.rpict(scene, octree, over, *options) for _ in range(2))
+        mean = (luminance(one) + luminance(other)) / 2 / bright
+        total = (squared_error(one, references) + squared_error(other, references)) / 2
+        return (t1 + t2) / 2 - start, squared_noise(one, other, middle), total, mean
 
-def time_to(points, goal):
-    points = sorted(points)
-    for (t0, e0), (t1, e1) in zip(points, points[1:]):
-        if e1 <= goal < e0:
-            return f"{t0 * (t1 / t0) ** (np.log(e0 / goal) / np.log(e0 / e1)):.3g}"
-    if points[0][1] <= goal:
-        return f"< {points[0][0]:.3g}"
-    (t0, e0), (t1, e1) = points[-2:]
-    slope = np.log(e0 / e1) / np.log(t1 / t0)
-    return f"~{t1 * (e1 / goal) ** 2:.3g}" if slope > 0.4 else "never (~)"
+    def cached(setting, limit):
+        options = [*setting.split(), "-lr", 12, "-lw", 1e-4, "-ds", 0.15, "-af", cache]
+        cache.unlink(missing_ok=True)
+        picture, fill = programs.rpict(scene, octree, 1, *options, limit=limit)
+        return None if picture is None else [fill - start, *pair(2, *options)]
+
+    for over, setting in UNCACHED + (UNCACHED_MATT if scene.is_matt else ()):
+        over *= 3 if scene.name.startswith("library") else 1
+        seconds, noise, total, mean = kept.get(f"rpict {over} {setting}", lambda: pair(over, "-aa", 0, "-as", 0, *setting.split()))
+        table.add("rpict, no cache", f"{over**2} rays, `-aa 0 {setting}`", seconds, math.sqrt(noise), mean)
+        table.offer("rpict", [(seconds * noise / goal**2, "~ no cache") for goal in GOALS])
+    fill = 0
+    for setting in CACHED:
+        if fill > LIMIT / 4:
+            print(f"| rpict, cache | `{setting}` | not tried, as the coarser cache took {fill:.1f} | | |")
+            continue
+        found = kept.get(f"rpict {setting}", lambda: cached(setting, LIMIT))
+        if found is None:
+            print(f"| rpict, cache | `{setting}` | not filled in {LIMIT} | | |")
+            continue
+        fill, seconds, noise, total, mean = found
+        stays = total - noise
+        told = f"4 rays, `{setting}`; {100 * math.sqrt(max(stays, 0)):.2f} % stays; the cache took {fill:.1f} of the time"
+        table.add("rpict, cache", told, fill + seconds, math.sqrt(total), mean)
+        rays = [4 * noise / (goal**2 - stays) if goal**2 > stays else None for goal in GOALS]
+        table.offer("rpict", [(fill + n * seconds / 4, "~ cache") if n else (None, "never") for n in rays])
 
 
 def main():
-    program, scene, view, reference = sys.argv[1:5]
-    who = (sys.argv[5] if len(sys.argv) > 5 else "crex,rpict,mitsuba").split(",")
-    reference = exr(reference)
-    curves = {}
-
-    def add(name, setting, picture, seconds):
-        off = error(picture, reference)
-        curves.setdefault(name, []).append((seconds, off))
-        mean = picture.mean() / reference.mean()
-        print(f"| {name} | {setting} | {seconds:.2f} | {100 * off:.2f} | {mean:.4f} |", flush=True)
-
-    print("| renderer | setting | CPU s | error, % | mean / reference |\n|---|---|---|---|---|")
-    if "crex" in who:
-        for samples in (4, 16, 64, 128):
-            add("crex --filter D", f"{samples} spp", *crex(program, scene, view, samples, "--filter", "D"))
-        for samples in (16, 64):
-            add("crex", f"{samples} spp", *crex(program, scene, view, samples))
-    if "rpict" in who:
-        cached = "-aa .1 -ar 256 -ad 1024 -as 256".split()
-        for over, more in ((1, "-aa .2 -ar 64 -ad 256 -as 64".split()), (2, cached), (3, cached)):
-            add("rpict, cache", f"{over}x{over} spp {' '.join(more)}", *rpict(scene, view, over, *more))
-        for over in (1, 2):
-            add("rpict, no cache", f"{over}x{over} spp -aa 0 -ad 8", *rpict(scene, view, over, *"-aa 0 -ad 8 -as 0".split()))
-    if "mitsuba" in who:
-        for index, (variant, samples, picture, seconds) in enumerate(mitsuba_points(scene, view, (16, 64))):
-            if index > 0:  # the first compiles
-                add(f"Mitsuba {variant}", f"{samples} spp", picture, seconds)
-    if "cycles" in who:
-        for samples in (16, 64):
-            add("Cycles", f"{samples} spp", *cycles(scene, view, samples))
-        for samples in (4, 16):
-            add("Cycles, denoised", f"{samples} spp", *cycles(scene, view, samples, "denoised"))
-    print("\n| renderer | CPU s to 5 % | to 2 % | to 1 % |\n|---|---|---|---|")
-    for name, points in curves.items():
-        print(f"| {name} | " + " | ".join(time_to(points, goal) for goal in (0.05, 0.02, 0.01)) + " |")
+    program = Path(sys.argv[1]).resolve()
+    only = sys.argv[2].split("/") if len(sys.argv) > 2 and sys.argv[2] != "all" else None
+    who = (sys.argv[3] if len(sys.argv) > 3 else "crex,rpict,mitsuba,cycles").split(",")
+    keep = Path(os.environ["KEEP"]).resolve()
+    keep.mkdir(parents=True, exist_ok=True)
+    if "cycles" in who and "CYCLES_PYTHON" not in os.environ:
+        print("Cycles is skipped: CYCLES_PYTHON names no Python")
+        who.remove("cycles")
+    processor = re.search("model name.*: (.*)", Path("/proc/cpuinfo").read_text())[1]
+    told = programs.run([program, "--version"])[0].decode().strip()
+    print(f"{datetime.date.today()}, {processor}; {told}, build {build_of(program)}")
+    all_times = {}
+    for name, scene in scenes(keep):
+        if only and name not in only:
+            continue
+        if scene:
+            all_times[name] = measure(scene, program, who, keep)
+        else:
+            print(f"\n{name} is skipped: its folder is not named")
+    for goal in range(len(GOALS)):
+        summary(all_times, goal)
 
 
 main()
