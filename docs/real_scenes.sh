@@ -94,6 +94,10 @@ compare patterns renders "basic.mat patterns.mat $suite disks.rad rect_fixture.r
 compare patterns_plan renders "basic.mat patterns.mat $suite disks.rad rect_fixture.rad" "$plan" patterns.rif
 compare glass renders "basic.mat $open torus.rad sunset_sky.rad glass_ill.rad" "$view" glass.rif
 compare inst renders "basic.mat $suite porsches.rad spotlights.rad rect_fixture.rad glowbulb.rad" "$view" inst.rif
+# What makes inst differ is the glow of limited reach: without it, and by it alone, unhidden and sampled at its middle.
+files="basic.mat $suite porsches.rad spotlights.rad rect_fixture.rad"
+compare inst_dark renders "$files" "$view" "$files"
+compare inst_glow renders "basic.mat $suite glowbulb.rad" "$view" "basic.mat $suite glowbulb.rad" "" "-dj 0 -ds 0"
 compare trans renders "basic.mat $open ballcompare.rad spotlights.rad rect_fixture.rad trans_pane.rad sunset_sky.rad" "$view" trans.rif
 compare mesh renders "basic.mat chrome.mat $suite $women rect_fixture.rad" "$view" mesh.rif
 compare mirror renders "basic.mat $suite glass_pane.rad antimatter_portal.rad bubble_in_cube.rad mirror.rad sunset_sky.rad" "$fish" mirror.rif
@@ -102,6 +106,12 @@ for name in tfunc:ball_in_cube trans2:gymbal; do
     files="basic.mat $open ${name#*:}.rad sunset_sky.rad illum_${name%:*}.rad"
     compare "${name%:*}" renders "$files" "$view" "$files"
 done
+# The same sun of a fiftieth the width: rpict widens what trans2 passes by the light's solid angle.
+if is_wanted trans2_star; then
+    sed 's/2.5e4/6.25e7/g; s/1e-03 1$/1e-03 .02/' "$SCENES/renders/sunset_sky.rad" > "$work/star_sky.rad"
+    files="basic.mat $open gymbal.rad $work/star_sky.rad illum_trans2.rad"
+    compare trans2_star renders "$files" "$view" "$files"
+fi
 # Without the vase, whose mesh is absent.
 files="basic.mat $open rect_fixture.rad sunset_sky.rad dielectric_pane.rad"
 compare dielectric renders "$files" "$view" "$files"
@@ -111,6 +121,16 @@ for name in prism1 prism2; do
     files="basic.mat $open sunset_sky.rad $name.rad"
     compare "$name" renders "$files" "$prism" "$files" "" "-dj .3 -ds 0"
 done
+# The edge of a spotlight's cone, by a ring of radius .2 at height 3: irradiance at some distances from its axis.
+if is_wanted cone_edge; then
+    echo "void spotlight sp 0 0 7 1000 1000 1000 30 0 0 -1 sp ring r 0 0 8 0 0 3 0 0 -1 0 .2" | oconv - > "$work/cone.oct"
+    for x in .7 .9 .95; do
+        awk -v x=$x 'BEGIN { for (i = 0; i < 60000; i++) print x, 0, 0, 0, 0, 1 }' |
+            rtrace -I -h -ab 0 -dj 1 -ds 0 -dt 0 -u+ "$work/cone.oct" |
+            awk -v x=$x '{ sum += $1; square += $1 * $1 } END { m = sum / NR; print "cone_edge " x ":", m, "+-", sqrt((square / NR - m * m) / NR) }'
+    done
+fi
+
 # What rpict loses of a sun behind a sheet of prisms: the irradiance of a wall behind it, by jitter, with the share of points without any.
 if is_wanted prism_jitter; then
     cd "$SCENES/renders"
@@ -133,13 +153,15 @@ compare mist renders "$files" "-vp 0.1 3.2 2.8 -vd -2.7336 -0.482008 -1.02483 -v
 compare wgmdf renders "basic.mat $suite ringlight.rad gymbal2.rad" \
     "-vp -2.60899 4.62728 2.52391 -vd -1.11057 -1.64932 -1.10768 -vh 46.6777 -vv 46.6777" wgmdf.rif
 
-# A bulb of 200 facets with a ball's surface in place of the last sphere of a file, whose name, centre and radius follow.
+# A bulb of 200 facets with a ball's surface in place of the last sphere of a file, whose name, centre, radius and radiance follow. The facets
+# light and a glow inside shows, since rpict draws small flat lights over its pictures by itself.
 facets() {
-    local file=$1 material=$2 x=$3 y=$4 z=$5 radius=$6
+    local file=$1 name=$2 x=$3 y=$4 z=$5 radius=$6 light="$7 $8 $9"
     awk -v RS= -v ORS='\n\n' -v centre="$x $y $z" '
         { numbers = $0; gsub(/[ \t\n]+/, " ", numbers) }
         $2 != "sphere" || index(numbers, centre) == 0' "$file"
-    gensurf "$material" facet "$x+1.0104*$radius*sin(PI*s)*cos(2*PI*t)" "$y+1.0104*$radius*sin(PI*s)*sin(2*PI*t)" \
+    echo "void illum $name.f 0 0 3 $light void glow $name.g 0 0 4 $light 0 $name.g sphere $name.b 0 0 4 $x $y $z $(awk "BEGIN { print .98 * $radius }")"
+    gensurf "$name.f" "$name" "$x+1.0104*$radius*sin(PI*s)*cos(2*PI*t)" "$y+1.0104*$radius*sin(PI*s)*sin(2*PI*t)" \
         "$z+1.0104*$radius*cos(PI*s)" 10 20
 }
 
@@ -148,8 +170,14 @@ compare office office "${lamp/lamp/lights lamp}" "$desk" office.rif
 compare officelamp office "$lamp" "$desk" officelamp.rif
 if is_wanted officelamp_facets; then
     cd "$SCENES/office"
-    facets lamp incandescent60 -24.9348093976 29.2873855725 4.38769767309 0.416625 > "$work/lamp_facets"
-    rays=3 compare officelamp_facets office "${lamp/lamp/$work/lamp_facets}" "$desk" officelamp.rif "" "-dj 0 -ds 0"
+    facets lamp bulb -24.9348093976 29.2873855725 4.38769767309 0.416625 500 500 500 > "$work/lamp_facets"
+    rays=$((rays / 2)) compare officelamp_facets office "${lamp/lamp/$work/lamp_facets}" "$desk" officelamp.rif "" "-dj 0 -ds 0"
+fi
+if is_wanted officeday_facets; then
+    cd "$SCENES/office"
+    facets lamp bulb -24.9348093976 29.2873855725 4.38769767309 0.416625 500 500 500 > "$work/lamp_facets"
+    files="'!gensky 7 12 17 | xform -rx -90 -ry 90' sky ${lamp/lamp/$work/lamp_facets}"
+    rays=$((rays / 2)) compare officeday_facets office "$files" "$desk" officeday2.rif "" "-dj .5 -ds 0"
 fi
 compare officeday office "'!gensky 7 12 17 | xform -rx -90 -ry 90' sky $lamp" "$desk" officeday2.rif
 
@@ -169,9 +197,10 @@ for name in living:"$living" living2:"-vf vf/living2" bed:"-vf vf/bed" bath:"-vf
 done
 if is_wanted night_bath_facets; then
     cd "$SCENES/cabin"
-    facets lights small_globe_light 2.7 17.4 6.75 .29 > "$work/lights_one"
-    facets "$work/lights_one" small_globe_light 5.7 17.4 6.75 .29 > "$work/lights_facets"
-    rays=2 compare night_bath_facets cabin "$cabin $work/lights_facets mirrors.rad" "-vf vf/bath" \
+    facets lights left_globe 2.7 17.4 6.75 .29 14.5 14.5 14.5 > "$work/lights_one"
+    facets "$work/lights_one" right_globe 5.7 17.4 6.75 .29 14.5 14.5 14.5 > "$work/lights_two"
+    facets "$work/lights_two" living_globe 19.6 12 8.5 .5 10 10 10 > "$work/lights_facets"
+    rays=$((rays / 4)) compare night_bath_facets cabin "$cabin $work/lights_facets mirrors.rad" "-vf vf/bath" \
         "$cabin lights mirrors.rad" "" "-dj 0 -ds 0"
 fi
 compare day_living cabin "$cabin lights.off mirrors.rad summerday landscape" "$living" "$cabin lights.off mirrors.rad summerday landscape"
