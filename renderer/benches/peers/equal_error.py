@@ -178,7 +178,7 @@ def main():
     told = programs.run([program, "--version"])[0].decode().strip()
     print(f"{datetime.date.today()}, {processor}; {told}, build {build_of(program)}")
     all_times = {}
-    for name, scene in scenes(keep):
+    for name, scene in scenes(keep, only):
         if only and name not in only:
             continue
         if scene:

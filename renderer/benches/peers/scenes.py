@@ -11,8 +11,8 @@ from programs import Scene
 STIMULI = Path(__file__).resolve().parents[3] / "stimuli"
 
 
-def scenes(keep):
-    """All of them; those whose files are not there as their names alone."""
+def scenes(keep, only):
+    """Names and scenes, no scene where its files are not there; matt ones are made if they are among `only`."""
     corridor, library = (STIMULI / name for name in ("corridor", "library"))
     corridor_files = ["materials.rad", "shell.rad", "layout_a.rad"]
     yield "cornell_d", "CORNELL" in os.environ and Scene(
@@ -33,7 +33,8 @@ def scenes(keep):
     )
     for folder, files, width, height in ((corridor, corridor_files, 100, 80), (library, ["library.rad"], 80, 57)):
         name = f"{folder.name}, matt"
-        yield name, matt_scene(name, folder, files, width, height, keep)
+        if not only or name in only:
+            yield name, matt_scene(name, folder, files, width, height, keep)
 
 
 def matt_scene(name, folder, files, width, height, keep):
