@@ -17,7 +17,7 @@
 //! ```
 //! `mean_s` and `spread_s` are seconds a ray, `effective` the number of equal observations that would say as much,
 //! `errors` those of past predictions in deviations, the oldest first. `writers` is the cost of writing pictures, by format
-//! or EXR's compression, and of other chores (`gather`, `develop`, `fill`), of which bytes are counted in place of rays, and of
+//! or EXR's compression, and of other chores (`gather`, `develop`, `soften`, `fill`), of which bytes are counted in place of rays, and of
 //! the `sprinkle`, of which nanoseconds are counted that its rays were expected to take. `places` holds, for a crex and the limits
 //! of its paths, what rays of rounds cost at each place: the letter, the byte at which it stands, and which of its runs it is (the
 //! 16th stands for all later ones). `pace` is the same for each nanosecond that they would have taken at the cost of their picture's

@@ -15,12 +15,15 @@ use super::RoundRecord;
 use super::refine::Refinement;
 use super::round::{Round, State};
 
+/// Samples from which soft light is shown as it is.
+pub(super) const SOFT_SAMPLES: u64 = 8;
+
 /// Samples of a pixel from which it is shown as it is. Of soft light a few scattered samples with what lies between them filled in
 /// are nearer the truth than one sample of each pixel, which is mostly noise: a pixel with fewer samples than these shares those of
 /// its neighbours, so that the picture does not become worse as they come in.
 fn enough(plane: Plane) -> f32 {
     match plane {
-        Plane::Layer(Component::Diffuse | Component::Glossy) | Plane::Ambient => 8.0,
+        Plane::Layer(Component::Diffuse | Component::Glossy) | Plane::Ambient => SOFT_SAMPLES as f32,
         Plane::Direct | Plane::Layer(_) => 1.0,
     }
 }
@@ -109,6 +112,11 @@ impl Merger {
     /// Whether the rounds alone give every plane samples in every pixel.
     pub(super) fn is_complete(&self) -> bool {
         self.clean && !self.direct.contains(&0)
+    }
+
+    /// Samples of every pixel, by the rounds alone.
+    pub(super) fn samples(&self) -> u64 {
+        self.direct.iter().min().map_or(0, |samples| u64::from(*samples))
     }
 
     /// What was decided in the rounds.

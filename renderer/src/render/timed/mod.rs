@@ -18,7 +18,7 @@ use crate::work::WorkReport;
 
 use super::outcome::{Outcome, add_report, reached};
 use super::{RenderError, Renderer, Rendering};
-use develop::Merger;
+use develop::{Merger, SOFT_SAMPLES};
 use ladder::SPRINKLED;
 use refine::Refinement;
 use round::Round;
@@ -127,11 +127,12 @@ impl Renderer<'_> {
             }
             costs.profile_mut().observe_writer(GATHER, self.plane_bytes(), gathered_s);
         }
-        let budget = kept(if merger.is_complete() { DEVELOP } else { FILL }, slower);
+        let budget = kept(chore(merger.is_complete(), merger.samples()), slower);
         let left_s = || budget.left_s();
         refinement.run(self, &complete, u64::MAX, (&left_s, &left_s), &mut costs)?;
         let ended_s = budget.now_s();
-        let chore = if merger.is_complete() || refinement.passes() > 0 { DEVELOP } else { FILL };
+        let complete = merger.is_complete() || refinement.passes() > 0;
+        let chore = chore(complete, merger.samples() + refinement.passes());
         let developed = self.developed(merger, refinement);
         costs.profile_mut().observe_writer(chore, self.plane_bytes(), budget.now_s() - ended_s);
         Ok(developed)
@@ -271,11 +272,21 @@ pub fn paths(program: &Program, limits: &Limits) -> String {
     format!("{} {ends}{diffuse} -st {glossy_threshold} {splits}", program.text())
 }
 
-/// Bringing a round's sums together, and making the film, of samples in every pixel or with pixels to be filled in, by their
-/// names in the profile.
+/// Bringing a round's sums together, and making the film, of enough samples in every pixel, with soft light to be shared or with
+/// pixels to be filled in, by their names in the profile.
 const GATHER: &str = "gather";
 const DEVELOP: &str = "develop";
+const SOFTEN: &str = "soften";
 const FILL: &str = "fill";
+
+/// What making the film will be, with samples of the whole crex in every pixel or not, and so many of them.
+fn chore(complete: bool, samples: u64) -> &'static str {
+    match complete {
+        true if samples >= SOFT_SAMPLES => DEVELOP,
+        true => SOFTEN,
+        false => FILL,
+    }
+}
 
 /// Seconds that these take for each byte of the planes before they were measured, generously (a 2 GHz core).
 const CHORE_S: f64 = 1.2e-9;
@@ -319,6 +330,12 @@ mod tests {
         let fitting = |left_s| fitting(4, left_s, Some(2.0));
         assert_eq!([-1.0, 0.0, 0.9, 1.1, 2.1, 3.9, 4.1, 100.0].map(fitting), [0, 0, 0, 1, 2, 3, 4, 4]);
         assert_eq!(super::fitting(4, 1.0, None), 4);
+    }
+
+    #[test]
+    fn what_costs_differently_at_the_end_is_learnt_apart() {
+        assert_eq!([chore(false, 0), chore(false, 9), chore(true, 1), chore(true, 7)], [FILL, FILL, SOFTEN, SOFTEN]);
+        assert_eq!(chore(true, SOFT_SAMPLES), DEVELOP);
     }
 
     #[test]
