@@ -48,10 +48,16 @@ pub fn merge_rows(tiles: impl IntoIterator<Item = Vec<StageRow>>) -> Vec<StageRo
                 merged.insert(row.stage.key.clone(), row);
             }
             Some(sum) => {
-                // Skipped only if it was skipped everywhere.
+                // Skipped only if it was skipped everywhere; else what was predicted of those that ran is what it took.
+                match (sum.skipped, row.skipped) {
+                    (None, Some(_)) => {}
+                    (Some(_), None) => (sum.predicted_s, sum.bound_s) = (row.predicted_s, row.bound_s),
+                    _ => {
+                        sum.predicted_s = sum.predicted_s.zip(row.predicted_s).map(|(one, other)| one + other);
+                        sum.bound_s = sum.bound_s.zip(row.bound_s).map(|(one, other)| one + other);
+                    }
+                }
                 sum.skipped = sum.skipped.and(row.skipped);
-                sum.predicted_s = sum.predicted_s.zip(row.predicted_s).map(|(one, other)| one + other);
-                sum.bound_s = sum.bound_s.zip(row.bound_s).map(|(one, other)| one + other);
                 sum.report.rays += row.report.rays;
                 sum.report.seconds += row.report.seconds;
                 for (component, count) in sum.report.spawned.iter_mut() {
@@ -68,4 +74,35 @@ pub fn merge_rows(tiles: impl IntoIterator<Item = Vec<StageRow>>) -> Vec<StageRo
         row.stage.run = *run;
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::component::Component;
+
+    #[test]
+    fn predictions_are_those_of_the_rounds_that_ran() {
+        let row = |predicted_s: f64, skipped: Option<Skipped>| {
+            let key = StageKey::from_words([0].into_iter());
+            let component = Component::Diffuse;
+            let stage = Stage { key, component, span: (0, 1), run: 1, threshold: None, held: false, group: None };
+            let report = WorkReport { rays: u64::from(skipped.is_none()), ..WorkReport::default() };
+            StageRow { stage, report, predicted_s: Some(predicted_s), bound_s: Some(2.0 * predicted_s), skipped }
+        };
+        let time = Some(Skipped::Time);
+        for (rounds, predicted_s, skipped) in [
+            ([(1.0, None), (2.0, None), (4.0, None)], 7.0, None),
+            ([(1.0, None), (2.0, time), (4.0, None)], 5.0, None),
+            ([(1.0, time), (2.0, None), (4.0, time)], 2.0, None),
+            ([(1.0, time), (2.0, time), (4.0, time)], 7.0, time),
+        ] {
+            let merged = merge_rows(rounds.map(|(seconds, skipped)| vec![row(seconds, skipped)]));
+            let [row] = &merged[..] else { panic!("one stage") };
+            assert_eq!(
+                (row.predicted_s, row.bound_s, row.skipped),
+                (Some(predicted_s), Some(2.0 * predicted_s), skipped)
+            );
+        }
+    }
 }
