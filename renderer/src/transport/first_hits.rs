@@ -3,6 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::look::Made;
 use super::parcel::Samples;
 use super::ray::{PathRay, RayPath};
 use super::trace::{Meeting, Tracer};
@@ -51,16 +52,16 @@ impl Tracer<'_> {
     ) -> Raster<bool> {
         each_pixel(samples, |x, y| {
             let mut hits = self.grid(samples, a_side.max(1), x, y);
-            hits.any(|meeting| meeting.hit.is_some_and(|(hit, _)| counts(hit.surface)))
+            hits.any(|(meeting, _)| meeting.hit.is_some_and(|(hit, _)| counts(hit.surface)))
         })
     }
 
     fn look_at(&self, samples: &Samples<'_>, wanted: Wanted, a_side: usize, x: usize, y: usize) -> Pixel {
         let mut votes: Vec<(SurfaceId, u32)> = Vec::new();
         let (mut met, mut depth, mut normal, mut albedo) = (0_u32, 0.0_f64, Vec3::ZERO, Vec3::ZERO);
-        for meeting in self.grid(samples, a_side, x, y) {
+        for (meeting, made) in self.grid(samples, a_side, x, y) {
             let Some((hit, look)) = meeting.hit else { continue };
-            let Some(material) = look.material() else { continue };
+            let Some(material) = look.material(&made) else { continue };
             met += 1;
             depth += meeting.length;
             let side = if hit.is_front(meeting.ray.dir) { 1.0 } else { -1.0 };
@@ -96,7 +97,7 @@ impl Tracer<'_> {
         a_side: usize,
         x: usize,
         y: usize,
-    ) -> impl Iterator<Item = Meeting<'a>> {
+    ) -> impl Iterator<Item = (Meeting<'a>, Made)> {
         /// Of mixed materials the one that covers more is seen.
         const MIDDLE: f64 = 0.5;
         let (mut memory, mut pieces) = (Memory::default(), Vec::new());
@@ -106,7 +107,9 @@ impl Tracer<'_> {
             let down = (y as f64 + middle(i / a_side)) / samples.height as f64;
             let ray = samples.view.ray(across, down)?;
             let path = PathRay { ray, ripple: Rgb::ONE, path: RayPath::primary(0, 0) };
-            self.meet(&path, MIDDLE, &mut memory, &mut pieces)
+            let mut made = None;
+            let meeting = self.meet(&path, MIDDLE, &mut memory, &mut pieces, &mut made)?;
+            Some((meeting, made))
         })
     }
 }

@@ -10,7 +10,7 @@ use crate::pattern::{Finish, Memory, Place};
 use crate::scene::{Light, Scene, Worn};
 
 /// What a ray sees in a surface.
-#[allow(clippy::large_enum_variant, reason = "made anew at every hit, where nothing should be allocated")]
+#[derive(Clone, Copy)]
 pub(super) enum Look<'a> {
     /// The surface is not there.
     Through,
@@ -20,16 +20,22 @@ pub(super) enum Look<'a> {
     Mist(MistId),
     /// A material as it is.
     Plain(&'a Material),
-    /// A material as patterns and textures make it, and what they add to the unit normal of the surface's front.
-    Dressed(Material, DVec3),
+    /// The material that was made, as patterns and textures have it, and what they add to the unit normal of the surface's front.
+    Dressed(DVec3),
 }
 
-impl Look<'_> {
+/// Room for a material that patterns and textures make: a large thing, which few hits need.
+pub(super) type Made = Option<Material>;
+
+impl<'a> Look<'a> {
     /// The material, if there is one.
-    pub(super) fn material(&self) -> Option<&Material> {
+    pub(super) fn material<'b>(&self, made: &'b Made) -> Option<&'b Material>
+    where
+        'a: 'b,
+    {
         match self {
             Self::Plain(material) => Some(material),
-            Self::Dressed(material, _) => Some(material),
+            Self::Dressed(_) => made.as_ref(),
             Self::Through | Self::Black | Self::Mist(_) => None,
         }
     }
@@ -48,7 +54,7 @@ pub(super) struct Looker<'a> {
 }
 
 impl<'a> Looker<'a> {
-    pub(super) fn look(mut self, hit: &Hit, memory: &mut Memory) -> Look<'a> {
+    pub(super) fn look(mut self, hit: &Hit, memory: &mut Memory, made: &mut Made) -> Look<'a> {
         let scene = self.scene;
         let Some(mut material) = scene.material(hit.surface) else { return Look::Through };
         if scene.is_cut_away(hit, self.ray.dir) {
@@ -116,10 +122,13 @@ impl<'a> Looker<'a> {
         }
         match material {
             Material::Programmed(id) => {
-                let made = scene.programmed(*id, &self.place(hit), finish.tint, finish.bend, memory);
-                made.map_or(Look::Black, |made| Look::Dressed(made, finish.bend))
+                *made = scene.programmed(*id, &self.place(hit), finish.tint, finish.bend, memory);
+                if made.is_some() { Look::Dressed(finish.bend) } else { Look::Black }
             }
-            material => Look::Dressed(material.tinted(finish.tint), finish.bend),
+            material => {
+                *made = Some(material.tinted(finish.tint));
+                Look::Dressed(finish.bend)
+            }
         }
     }
 

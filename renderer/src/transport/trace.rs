@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use super::air::{Medium, Piece, was_in};
 use super::dimension;
 use super::direct::{Lit, Scratch};
-use super::look::{Look, Looker, far_away, place};
+use super::look::{Look, Looker, Made, far_away, place};
 use super::modulation::Modulation;
 use super::ray::{PathRay, transmittance};
 use super::spawn::{Departure, Limits, Spawner};
@@ -63,7 +63,8 @@ impl Tracer<'_> {
     /// Traces a ray: adds what it brings to the planes, and puts what it spawns into the bins.
     pub(super) fn trace(&self, ray: &PathRay, sampler: &Sampler, scratch: &mut Scratch, spawner: &mut Spawner<'_>) {
         let Scratch { memory, pieces, .. } = scratch;
-        let Some(meeting) = self.meet(ray, self.mixing(sampler), memory, pieces) else { return };
+        let mut made = None;
+        let Some(meeting) = self.meet(ray, self.mixing(sampler), memory, pieces, &mut made) else { return };
         let Meeting { hit, ray: last, length, piece } = meeting;
         let path = &ray.path;
         let before =
@@ -72,11 +73,8 @@ impl Tracer<'_> {
             let ripple = ray.ripple * before * transmittance(piece.medium.extinction, f64::INFINITY);
             return self.file(ray, ripple * self.escaped(ray, &last, scratch), spawner);
         };
-        let (material, bend) = match &look {
-            Look::Plain(material) => (*material, DVec3::ZERO),
-            Look::Dressed(material, bend) => (material, *bend),
-            Look::Through | Look::Black | Look::Mist(_) => return,
-        };
+        let Some(material) = look.material(&made) else { return };
+        let bend = if let Look::Dressed(bend) = look { bend } else { DVec3::ZERO };
 
         let front = hit.is_front(last.dir);
         // A ray that meets a solid's boundary from inside was in the solid, even if it started there (the eye).
@@ -150,13 +148,16 @@ impl Tracer<'_> {
     }
 
     /// Follows a ray through surfaces that are not there for it; `u` in [0,1) chooses among mixed materials. `None` if nothing comes from where it ends.
-    /// `pieces` is cleared, and filled with the pieces of the way but the last if it crosses boundaries of mist.
+    /// `pieces` is cleared, and filled with the pieces of the way but the last if it crosses boundaries of mist; `made` gets the
+    /// material where patterns or textures make one.
+    #[inline(always)]
     pub(super) fn meet(
         &self,
         from: &PathRay,
         u: f64,
         memory: &mut Memory,
         pieces: &mut Vec<Piece>,
+        made: &mut Made,
     ) -> Option<Meeting<'_>> {
         pieces.clear();
         let mut ray = from.ray;
@@ -172,7 +173,7 @@ impl Tracer<'_> {
             length += hit.t;
             piece.length += hit.t;
             let looker = Looker { scene: self.scene, ray, blind: from.path.blind, u };
-            match looker.look(&hit, memory) {
+            match looker.look(&hit, memory, made) {
                 Look::Black if pieces.is_empty() && piece.medium.mists.is_empty() => return None,
                 Look::Mist(mist) => {
                     let inwards = hit.is_front(ray.dir);
