@@ -55,7 +55,8 @@ fn a_fan_of_slivers_has_no_gap() {
 fn a_deep_stack_is_crossed_pane_by_pane() {
     // A millimetre, a micrometre and a nanometre apart, near the origin and 100 m away from it.
     for (count, gap, place) in [(10_000, 1e-3, 0.0), (1000, 1e-6, 0.0), (1000, 1e-9, 0.0), (1000, 1e-6, 100.0)] {
-        let stack = aggregate((0..count).map(|i| moved(&square(f64::from(i) * gap, i % 3 == 0), DVec3::X * place)));
+        let stack =
+            aggregate((0..count).map(|i| moved(&square(f64::from(i) * gap, i % 3 == 0), DVec3::X * place).unwrap()));
         for dir in [DVec3::Z, DVec3::new(1e-3, 0.0, 1.0).normalize()] {
             let hits = hits_along(&stack, DVec3::new(place + 0.1, 0.2, -1.0), dir);
             assert_eq!(hits.len(), count as usize, "{gap:e} {place}");

@@ -30,7 +30,7 @@ proptest! {
         let (size, place) = (10_f64.powi(e), numbers.direction() * if far < 0 { 0.0 } else { 10_f64.powi(far) });
         let mut shapes: Vec<Shape> = (0..count).map(|_| some_shape(&mut numbers, 1.0, size)).collect();
         shapes.extend((0..count).filter_map(|_| tangle(&mut numbers, size)));
-        let shapes: Vec<Shape> = shapes.iter().map(|shape| moved(shape, place)).collect();
+        let shapes: Vec<Shape> = shapes.iter().filter_map(|shape| moved(shape, place)).collect();
         let (plain, best) = (at_level(&shapes, Level::Plain), at_level(&shapes, Level::best()));
         let (mut crossings, mut others) = (Vec::new(), Vec::new());
         let mut leaving = None;

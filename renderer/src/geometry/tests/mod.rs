@@ -212,7 +212,7 @@ fn the_answer_is_the_one_of_testing_every_shape() {
             Polygon::new(ground.iter().map(|&[x, y]| DVec3::new(x, y, -1e-3) * reach * 1e5).collect()).unwrap(),
         ));
         shapes.push(Shape::Sphere(Sphere::new(DVec3::ZERO, -reach * 1e7).unwrap()));
-        let moved: Vec<Shape> = shapes.into_iter().map(|shape| moved(&shape, place)).collect();
+        let moved: Vec<Shape> = shapes.into_iter().map(|shape| moved(&shape, place).unwrap()).collect();
         let aggregate = aggregate(moved.clone());
         let (mut found, mut leaving) = (0, None);
         for i in 0..8000 {
@@ -247,22 +247,23 @@ fn the_answer_is_the_one_of_testing_every_shape() {
     }
 }
 
-fn moved(shape: &Shape, by: DVec3) -> Shape {
-    match shape {
-        Shape::Triangle(t) => Shape::Triangle(Triangle::new(t.corners().map(|p| p + by)).unwrap()),
-        Shape::Polygon(p) => Shape::Polygon(Polygon::new(p.vertices().iter().map(|&v| v + by).collect()).unwrap()),
+/// A shape elsewhere; `None` where rounding leaves nothing of it.
+fn moved(shape: &Shape, by: DVec3) -> Option<Shape> {
+    Some(match shape {
+        Shape::Triangle(t) => Shape::Triangle(Triangle::new(t.corners().map(|p| p + by)).ok()?),
+        Shape::Polygon(p) => Shape::Polygon(Polygon::new(p.vertices().iter().map(|&v| v + by).collect()).ok()?),
         Shape::Sphere(s) => {
             let radius = if s.is_bubble() { -s.radius() } else { s.radius() };
-            Shape::Sphere(Sphere::new(s.centre() + by, radius).unwrap())
+            Shape::Sphere(Sphere::new(s.centre() + by, radius).ok()?)
         }
-        Shape::Ring(r) => Shape::Ring(Ring::new(r.centre() + by, r.normal(), r.radii()).unwrap()),
+        Shape::Ring(r) => Shape::Ring(Ring::new(r.centre() + by, r.normal(), r.radii()).ok()?),
         Shape::Placed(_) => panic!("placed shapes are tested by themselves"),
         Shape::Cone(c) => {
             let (base, axis) = c.axis();
             let ends = [base + by, base + axis * c.length() + by];
-            Shape::Cone(Cone::new(ends, c.radii(), c.is_inward()).unwrap())
+            Shape::Cone(Cone::new(ends, c.radii(), c.is_inward()).ok()?)
         }
-    }
+    })
 }
 
 fn square(z: f64, facing_up: bool) -> Shape {
@@ -378,7 +379,7 @@ fn placed_shapes_are_met_as_if_each_were_moved() {
         affine: to_scene.affine * DAffine3::from_scale(DVec3::splat(0.01)) * DAffine3::from_rotation_x(2.0),
         scale: 0.01,
     };
-    let by_moving = aggregate(shapes.iter().map(|shape| moved(shape, place)).collect::<Vec<_>>());
+    let by_moving = aggregate(shapes.iter().map(|shape| moved(shape, place).unwrap()).collect::<Vec<_>>());
     let by_placing = aggregate(vec![Shape::Placed(Placed::new(group.clone(), to_scene, 1000, bounds))]);
     let by_turning = aggregate(vec![Shape::Placed(Placed::new(group, turned, 0, bounds))]);
     let mut met = 0;
