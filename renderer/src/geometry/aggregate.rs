@@ -12,6 +12,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::{BvhBuildParams, aabb::Aabb};
 
 use super::block::{Part, fan};
+use super::coincident::{Box3, Coincident};
 use super::lanes::Level;
 use super::line::Line;
 use super::outliers::outliers;
@@ -110,29 +111,31 @@ impl Aggregate {
         // A scene that is smaller than a digit of its coordinates has no extent to divide by.
         let half_extent = half.max_element().max(f64::EPSILON * centre.abs().max_element()).max(f64::MIN_POSITIVE);
         let inner: Vec<usize> = (0..bounds.len()).filter(|index| outliers.binary_search(index).is_err()).collect();
-        let boxes: Vec<Aabb> = inner
+        let boxes: Vec<Box3> = inner
             .iter()
             .map(|&index| {
                 let [low, high] = bounds[index];
-                Aabb::new(
-                    round_down((low - centre) / half_extent - PADDING),
-                    round_up((high - centre) / half_extent + PADDING),
-                )
+                let padded = [(low - centre) / half_extent - PADDING, (high - centre) / half_extent + PADDING];
+                [round_down(padded[0]), round_up(padded[1])]
             })
             .collect();
+        let coincident = Coincident::new(&boxes);
         let bvh = if boxes.is_empty() {
             Bvh2::default()
         } else {
             // Leaves are made of what fits into blocks.
             let build = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
+            let boxes: Vec<Aabb> = coincident.boxes().map(|[low, high]| Aabb::new(low, high)).collect();
             obvhs::bvh2::builder::build_bvh2(&boxes, build, &mut Duration::default())
         };
-        let pair = |index: u32| {
-            let node = &bvh.nodes[index as usize];
-            let Aabb { min: low, max: high } = *node.aabb();
-            let is_leaf = node.prim_count > 0;
-            let first = if is_leaf { bvh.primitive_indices[node.first_index as usize] } else { node.first_index };
-            Pair { low, high, first, is_leaf }
+        let own = bvh.nodes.len() as u32;
+        let pair = |index: u32| match bvh.nodes.get(index as usize) {
+            Some(node) if node.prim_count == 0 => {
+                let Aabb { min: low, max: high } = *node.aabb();
+                Pair { low, high, first: node.first_index, is_leaf: false }
+            }
+            Some(node) => coincident.pair(bvh.primitive_indices[node.first_index as usize], own),
+            None => coincident.pair(index - own, own),
         };
         let parts = |slot: u32, found: &mut Vec<Part>| {
             let item = slots[inner[slot as usize]].as_ref();

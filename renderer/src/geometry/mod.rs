@@ -2,6 +2,7 @@
 
 mod aggregate;
 mod block;
+mod coincident;
 mod hit;
 mod lanes;
 mod line;

@@ -73,6 +73,10 @@ pub(crate) fn cases() -> Vec<Case> {
                 let text: String = (0..1000).map(|_| square("pane", "p", [0.0; 3], 1.0)).collect();
                 Row::near(0.5, above(&text, 0.1, 0.2), 1e-6)
             }),
+            ("10^5 coincident sheets are one", || {
+                let text: String = (0..100_000).map(|_| square("paper", "p", [0.0; 3], 1.0)).collect();
+                Row::same(2.0, above(&text, 0.1, 0.2))
+            }),
             ("a polygon of no area", || left_out("paper polygon flat 0 0 9 -1 0 0 1 0 0 0 0 0\n")),
             ("a polygon of one point", || left_out("paper polygon point 0 0 9 0 0 0 0 0 0 0 0 0\n")),
             ("a sphere of no radius", || left_out("paper sphere dot 0 0 4 0 0 0 0\n")),
