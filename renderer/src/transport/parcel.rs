@@ -81,7 +81,7 @@ impl Parcel {
         self.trace_lattice(tracer, samples, &(0..RANKS), workspace)
     }
 
-    /// As [`Self::trace_primary`], in the pixels of some ranks ([`rank`]) alone.
+    /// As [`Self::trace_primary`], in the pixels of some ranks (see the lattice) alone.
     pub fn trace_lattice(
         &mut self,
         tracer: &Tracer<'_>,
