@@ -96,11 +96,12 @@ impl Cost {
             && effective >= 1.0
             && effective <= observations as f64 * (1.0 + 1e-9);
         let unbiased = if effective > 1.0 { (effective - 1.0) / effective } else { 0.0 };
-        fits.then(|| Self {
+        let squares = spread_s * spread_s * weight * unbiased;
+        (fits && squares.is_finite()).then(|| Self {
             rays,
             observations,
             mean_s,
-            squares: spread_s * spread_s * weight * unbiased,
+            squares,
             weight_squares: weight * weight / effective,
         })
     }

@@ -125,7 +125,9 @@ impl<'p> PictureCosts<'p> {
             let beyond = ((mean_s / other_s).ln().powi(2) - sampling).max(0.0);
             (mean_s, if beyond.is_finite() { (TAIL * spread + beyond) / (TAIL + 1.0) } else { spread })
         });
-        let evidence = [of_place, of_sprinkle, of_rounds].into_iter().flatten().filter(|(mean_s, _)| *mean_s > 0.0);
+        // What is infinitely uncertain says nothing.
+        let says = |&(mean_s, variance): &(f64, f64)| mean_s > 0.0 && mean_s.is_finite() && variance.is_finite();
+        let evidence = [of_place, of_sprinkle, of_rounds].into_iter().flatten().filter(says);
         match weighed(evidence) {
             Some((mean_s, spread)) => {
                 let mean_s = rays as f64 * mean_s;
@@ -269,6 +271,18 @@ mod tests {
         costs.sprinkled(FIRST(), &cost(50, 100, 1.5e-3));
         near(costs.predict(FIRST(), 1_000_000), 10.0, 0.1);
         assert_eq!(costs.profile().cost(RayKind::Of(Component::Transmitted)).map(Cost::rays), Some(400_000));
+    }
+
+    #[test]
+    fn costs_beyond_measure_admit_nothing() {
+        let mut profile = ProfileCache::new("", "");
+        let mut costs = PictureCosts::new(&mut profile, "T");
+        for seconds in [1e-3, 1e200] {
+            costs.ran(FIRST(), 1, seconds);
+        }
+        let costs = PictureCosts::new(&mut profile, "T");
+        let predicted = costs.predict(FIRST(), 1000).expect("rays were seen");
+        assert!(costs.bound_s(&predicted) > 1e6, "{predicted:?}");
     }
 
     #[test]

@@ -121,6 +121,7 @@ fn what_is_no_profile_is_refused_by_line() {
         (format!("{head}\n\"D\": {}}}}}", cost("-1")), 3),
         (format!("{head}\n\n\"Q\": {}}}}}", cost("1")), 4),
         (format!("{head}\n\"D\": {}}}}}", cost("1e999")), 3),
+        (format!("{head}\n\"D\": {}}}}}", cost("1").replace("\"spread_s\": 0", "\"spread_s\": 1e200")), 3),
         (format!("{head}\n\"D\": {{}}}}}}"), 3),
         (format!("{head}}},\n\"places\": {{\"D\": {{\n\"D@0 run 0\": {{\"rays\": {}}}}}}}}}", cost("1")), 4),
         (format!("{head}}},\n\"places\": {{\"D\": {{\n\"D@0 run 1\": {{\"rays\": {}}}}}}}}}", cost("-1")), 4),

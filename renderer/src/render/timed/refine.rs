@@ -282,8 +282,8 @@ impl Learnt {
             add_report(&mut self.reports[place.kind().index()], &counts);
             let cost = costs.entry(place).or_default();
             let expected_s = cost.mean_s() * report.rays as f64;
-            if cost.rays() > 0 && expected_s > INTERRUPTED_S + INTERRUPTED * report.seconds {
-                // It was the others.
+            if cost.observations() == 1 && expected_s > INTERRUPTED_S + INTERRUPTED * report.seconds {
+                // It was the first one. After several that agree, one that is cheap is just that.
                 *cost = Cost::default();
             }
             if cost.rays() == 0 || report.seconds <= INTERRUPTED_S + INTERRUPTED * expected_s {
@@ -318,5 +318,40 @@ impl Learnt {
 }
 
 /// A stage of a chunk that took longer than so many seconds and so many times what it should was interrupted.
-const INTERRUPTED_S: f64 = 5e-5;
+const INTERRUPTED_S: f64 = 1e-3;
 const INTERRUPTED: f64 = 8.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cheap_blocks_do_not_hide_dear_ones_and_interruptions_are_left_out() {
+        let block = |seconds| {
+            let primary = WorkReport { rays: 60, seconds, ..WorkReport::default() };
+            Outcome { primary, ..Outcome::default() }
+        };
+        let mean_s = |blocks: &[f64]| {
+            let mut learnt = Learnt::default();
+            blocks.iter().for_each(|&seconds| learnt.take(&block(seconds), true));
+            60.0 * learnt.sprinkled[&Place::PRIMARY].mean_s()
+        };
+        let near = |found: f64, seconds: f64| assert!((found / seconds - 1.0).abs() < 1e-9, "{found} {seconds}");
+        // Sky between what is lit, and before it.
+        let mut mixed = vec![3e-4; 41];
+        mixed[20] = 1.2e-5;
+        near(mean_s(&mixed), (40.0 * 3e-4 + 1.2e-5) / 41.0);
+        mixed.swap(0, 20);
+        near(mean_s(&mixed), (40.0 * 3e-4 + 1.2e-5) / 41.0);
+        // The same where a block takes longer than an interruption must.
+        let mut long = vec![3e-2; 41];
+        long[20] = 1.2e-3;
+        near(mean_s(&long), (40.0 * 3e-2 + 1.2e-3) / 41.0);
+        // The thread waited, at first or later.
+        let mut waited = vec![3e-4; 41];
+        for at in [0, 20] {
+            waited[at] = 5e-2;
+        }
+        near(mean_s(&waited), 3e-4);
+    }
+}
